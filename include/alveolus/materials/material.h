@@ -80,6 +80,14 @@ namespace alveolus
              MaterialResponse           &response) const = 0;
 
     /**
+     * J_n = dv_n/dV of a record: current over undeformed volume of the
+     * material, by which stress and energy per undeformed volume become those
+     * per volume of the current mesh.
+     */
+    virtual double
+    volume_ratio(const double *history) const = 0;
+
+    /**
      * Bring a record back into the admissible set after a transfer, e.g. the
      * fabric onto its bounds.
      * @return number of values that had to be limited

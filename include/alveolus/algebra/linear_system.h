@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_algebra_linear_system_h
+#define alveolus_algebra_linear_system_h
+
+#include <alveolus/algebra/types.h>
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/full_matrix.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alveolus
+{
+  /**
+   * Matrix and solver of one sparse linear system. The only place that knows
+   * which library does the algebra: deal.II's matrix with UMFPACK on one
+   * process, Trilinos with MUMPS or ML on several.
+   */
+  class LinearSystem
+  {
+  public:
+    virtual ~LinearSystem() = default;
+
+    /** Set the matrix to zero. */
+    virtual void
+    clear() = 0;
+
+    /** Add a cell matrix; constrained rows and columns are condensed. */
+    virtual void
+    add(const dealii::FullMatrix<double>                   &cell_matrix,
+        const std::vector<dealii::types::global_dof_index> &dofs) = 0;
+
+    /** End of assembly: exchange between processes. */
+    virtual void
+    compress() = 0;
+
+    /**
+     * Solve A x = b for the unconstrained entries; constrained entries of x are
+     * set from the (homogeneous) constraints.
+     * @throws RunError for a singular matrix or an iteration that stagnates
+     */
+    virtual void
+    solve(NodalVector &x, const NodalVector &b) = 0;
+
+    /** Iterations of the last solve; 1 for a direct solver. */
+    virtual unsigned int
+    n_iterations() const
+    {
+      return 1;
+    }
+
+    /** Name for the log. */
+    virtual std::string
+    name() const = 0;
+  };
+
+  /**
+   * Make the system for a DoFHandler and its homogeneous constraints.
+   * @param type `automatic` (UMFPACK on one process, MUMPS on several),
+   *        `UMFPACK`, `MUMPS` or `multigrid` (CG with Trilinos ML)
+   * @param tolerance relative residual of iterative solvers
+   * @throws InputError for UMFPACK on several processes
+   */
+  template <int dim>
+  std::unique_ptr<LinearSystem>
+  make_linear_system(const dealii::DoFHandler<dim>           &dof_handler,
+                     const dealii::AffineConstraints<double> &constraints,
+                     const std::string                       &type,
+                     const double                             tolerance);
+} // namespace alveolus
+
+#endif

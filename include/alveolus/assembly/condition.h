@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_assembly_condition_h
+#define alveolus_assembly_condition_h
+
+#include <alveolus/algebra/linear_system.h>
+#include <alveolus/base/registry.h>
+#include <alveolus/mesh/nodes.h>
+#include <alveolus/state/state.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace alveolus
+{
+  /** The time interval of a step. */
+  struct Interval
+  {
+    double begin = 0.; ///< t_n [T]
+    double end   = 0.; ///< t_{n+1} [T]
+  };
+
+  /**
+   * Prescribed increments of single degrees of freedom, each with the condition
+   * it comes from; the same value may be prescribed twice, a different one is
+   * an InputError that names both.
+   */
+  class PrescribedIncrements
+  {
+  public:
+    void
+    prescribe(const dealii::types::global_dof_index dof,
+              const double                          value,
+              const std::string                    &where);
+
+    const std::map<dealii::types::global_dof_index,
+                   std::pair<double, std::string>> &
+    all() const
+    {
+      return values;
+    }
+
+  private:
+    std::map<dealii::types::global_dof_index, std::pair<double, std::string>>
+      values;
+  };
+
+  /**
+   * Where cell contributions go: the residual (internal minus external forces),
+   * the matrix if there is one, and, in the first iteration of a step, minus
+   * the matrix times the prescribed increments.
+   */
+  struct AssemblyTarget
+  {
+    NodalVector                             &residual;
+    LinearSystem                            *system = nullptr;
+    const dealii::AffineConstraints<double> *lift   = nullptr;
+    NodalVector                             *lifted = nullptr;
+
+    /** Add forces and (if there is a system) the matrix of one cell. */
+    void
+    add(const dealii::FullMatrix<double>                   &matrix,
+        const dealii::Vector<double>                       &forces,
+        const std::vector<dealii::types::global_dof_index> &dofs) const;
+  };
+
+  /** A named number for the history file. */
+  using Recorded = std::pair<std::string, double>;
+
+  /**
+   * A condition on a named boundary, curve or point: prescribes increments of
+   * degrees of freedom, adds forces, or both. Conditions are registered; the
+   * scene lists them under Conditions / Names.
+   */
+  template <int dim>
+  class Condition
+  {
+  public:
+    virtual ~Condition() = default;
+
+    /** Add the parameters, bound to members, to the current subsection. */
+    virtual void
+    declare_parameters(dealii::ParameterHandler &prm) = 0;
+
+    /**
+     * Resolve names on the mesh; called at the start and after each remesh.
+     * @param where path of the subsection, for messages. @throws InputError
+     */
+    virtual void
+    attach(const State<dim> &state, const std::string &where) = 0;
+
+    /** Called before the iterations of each attempt at a step. */
+    virtual void
+    begin_step(const State<dim> & /*state*/, const Interval & /*interval*/)
+    {}
+
+    /** Prescribe increments of relevant degrees of freedom. */
+    virtual void
+    prescribe(const State<dim> & /*state*/,
+              const Interval & /*interval*/,
+              PrescribedIncrements & /*increments*/) const
+    {}
+
+    /** Subtract external forces (and add minus their derivative). */
+    virtual void
+    add_forces(const State<dim> & /*state*/,
+               const NodalVector & /*increment*/,
+               const AssemblyTarget & /*target*/)
+    {}
+
+    /** The step is accepted. */
+    virtual void
+    commit()
+    {}
+
+    /** One line that says what is modelled, for `--validate`. */
+    virtual std::string
+    describe() const = 0;
+
+    std::string where; ///< path of the subsection
+  };
+
+  /** Owned cells and their faces on a set of boundary ids. */
+  template <int dim>
+  std::vector<std::pair<typename dealii::DoFHandler<dim>::active_cell_iterator,
+                        unsigned int>>
+  boundary_faces(const Configuration<dim>                   &configuration,
+                 const std::set<dealii::types::boundary_id> &ids);
+
+  /** x,y,z list -> component numbers. @throws InputError */
+  std::vector<unsigned int>
+  parse_components(const std::string &list,
+                   const unsigned int dim,
+                   const std::string &where);
+} // namespace alveolus
+
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_assembly_mechanics_assembler_h
+#define alveolus_assembly_mechanics_assembler_h
+
+#include <alveolus/assembly/cell_kernel.h>
+#include <alveolus/assembly/condition.h>
+#include <alveolus/state/state.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace alveolus
+{
+  /** What an assembly found, over all processes. */
+  struct AssemblyResult
+  {
+    bool        good = true;
+    std::string reason; ///< why not, with the place [mm]
+    /** Sum of |internal force| over all dofs of all cells [N (per mm)]. */
+    double force_scale = 0.;
+    double energy      = 0.; ///< stored energy [mJ (per mm)]
+  };
+
+  /**
+   * Assembles the residual (internal minus external forces) and the tangent of
+   * the Lagrangian phase for an increment du on x_n: the loop over cells (in
+   * threads) and over conditions. It writes the trial history, nothing else.
+   */
+  template <int dim>
+  class MechanicsAssembler
+  {
+  public:
+    using Conditions = std::vector<std::unique_ptr<Condition<dim>>>;
+
+    MechanicsAssembler(State<dim>                &state,
+                       const std::vector<Region> &regions,
+                       Conditions                &conditions);
+
+    /** Take the mesh x_n of a new step. */
+    void
+    begin_step(const Interval &interval);
+
+    /**
+     * @param increment du, ghosted [mm]
+     * @param target    residual (zeroed here) and, where wanted, the matrix
+     * If result.good is false, residual and matrix are incomplete.
+     */
+    AssemblyResult
+    assemble(const NodalVector &increment, const AssemblyTarget &target);
+
+    /** Internal forces alone of the last assembly, per dof [N (per mm)]. */
+    NodalVector internal_forces;
+
+    const StepGeometry<dim> &
+    step_geometry() const
+    {
+      return geometry;
+    }
+
+  private:
+    struct Scratch;
+    struct Copy;
+
+    State<dim>                &state;
+    const std::vector<Region> &regions;
+    Conditions                &conditions;
+    StepGeometry<dim>          geometry;
+  };
+} // namespace alveolus
+
+#endif

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_assembly_step_geometry_h
+#define alveolus_assembly_step_geometry_h
+
+#include <alveolus/mesh/configuration.h>
+
+#include <deal.II/base/quadrature.h>
+
+#include <vector>
+
+namespace alveolus
+{
+  /**
+   * Shape gradients and weights of the mesh x_n at all quadrature points of the
+   * owned cells. The mesh stands still during the equilibrium iterations of a
+   * step, so they are computed once a step through FEValues and kept in flat
+   * arrays.
+   */
+  template <int dim>
+  class StepGeometry
+  {
+  public:
+    explicit StepGeometry(const Configuration<dim> &configuration);
+
+    /** Take the configuration's mesh as it is now. @throws RunError if inverted
+     */
+    void
+    update();
+
+    /** Gradients of the scalar shape functions at a point, n_nodes long [1/mm].
+     */
+    const dealii::Tensor<1, dim> *
+    gradients(const unsigned int cell, const unsigned int point) const
+    {
+      return all_gradients.data() +
+             (static_cast<std::size_t>(slot[cell]) * n_points + point) *
+               n_nodes;
+    }
+
+    /** Quadrature weights times Jacobian of a cell, n_points long [mm^dim]. */
+    const double *
+    weights(const unsigned int cell) const
+    {
+      return all_weights.data() +
+             static_cast<std::size_t>(slot[cell]) * n_points;
+    }
+
+    std::size_t
+    memory_consumption() const;
+
+    const dealii::Quadrature<dim> quadrature;
+    const unsigned int            n_points;
+    const unsigned int            n_nodes; ///< scalar shape functions of a cell
+
+  private:
+    const Configuration<dim>           &configuration;
+    std::vector<unsigned int>           slot; ///< of each active cell, if owned
+    std::vector<dealii::Tensor<1, dim>> all_gradients;
+    std::vector<double>                 all_weights;
+  };
+} // namespace alveolus
+
+#endif

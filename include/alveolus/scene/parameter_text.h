@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_scene_parameter_text_h
+#define alveolus_scene_parameter_text_h
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+#include <vector>
+
+namespace alveolus
+{
+  /**
+   * The statements of a parameter file, in deal.II's syntax, with every
+   * `include` (relative to the including file) resolved and every statement's
+   * file and line remembered. Later statements override earlier ones, so a
+   * variant is a file that includes its base and sets a few values; setting an
+   * entry twice in one file is refused. apply() hands the values to a
+   * ParameterHandler, which owns names, patterns and documentation.
+   */
+  class ParameterText
+  {
+  public:
+    struct Entry
+    {
+      std::vector<std::string> section; ///< path of subsections
+      std::string              name;
+      std::string              value;
+      std::string              origin; ///< "file:line" or "--set"
+    };
+
+    /**
+     * Read @p file_name and then @p sets, statements of the form
+     * `Section/Subsection/Parameter=value` from the command line.
+     * @throws InputError for files that cannot be read and broken statements,
+     *         all problems in one message
+     */
+    static ParameterText
+    read(const std::string &file_name, const std::vector<std::string> &sets);
+
+    /** The last value set for "Section/Subsection/Name", or @p otherwise. */
+    std::string
+    value(const std::string &path, const std::string &otherwise) const;
+
+    /** Where the last value of @p path was set; "default" if nowhere. */
+    std::string
+    origin(const std::string &path) const;
+
+    /** The comma separated list at "<section>/Names"; empty if not set. */
+    std::vector<std::string>
+    names(const std::string &section) const;
+
+    /**
+     * Set every entry in @p prm, whose declarations must be complete.
+     * @throws InputError with one line for each undeclared entry or section
+     *         and each value that does not match its pattern
+     */
+    void
+    apply(dealii::ParameterHandler &prm) const;
+
+    std::string        file_name;
+    std::vector<Entry> entries;
+
+  private:
+    void
+    read_file(const std::string        &file_name,
+              std::vector<std::string> &open_files,
+              std::vector<std::string> &problems);
+  };
+
+  /** Folder part of a file name, "." if there is none. */
+  std::string
+  directory_of(const std::string &file_name);
+} // namespace alveolus
+
+#endif

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_solver_equilibrium_h
+#define alveolus_solver_equilibrium_h
+
+#include <alveolus/assembly/mechanics_assembler.h>
+#include <alveolus/base/verdict.h>
+
+#include <deal.II/base/timer.h>
+
+#include <memory>
+#include <vector>
+
+namespace alveolus
+{
+  /** What the solution of one increment took. */
+  struct EquilibriumReport
+  {
+    unsigned int        n_iterations = 0; ///< linear systems solved
+    std::vector<double> residuals; ///< L1 norm over the sum of internal forces
+    unsigned int        n_line_search = 0; ///< halvings of the Newton step
+    unsigned int        n_linear_iterations = 0;
+    double              energy              = 0.; ///< stored [mJ (per mm)]
+  };
+
+  /**
+   * Static equilibrium of one increment by Newton's method with backtracking.
+   * The prescribed increments enter through the first linear system (which sees
+   * the tangent of the last state) or an extrapolation of the last increment;
+   * after that only unconstrained dofs change. Writes trial history only.
+   */
+  template <int dim>
+  class Equilibrium
+  {
+  public:
+    struct Parameters
+    {
+      double       tolerance          = 1e-9;
+      double       absolute_tolerance = 1e-10;
+      unsigned int max_iterations     = 15;
+      unsigned int max_line_search    = 6;
+      std::string  predictor          = "extrapolated";
+      std::string  linear_solver      = "automatic";
+      double       linear_tolerance   = 1e-10;
+
+      void
+      declare(dealii::ParameterHandler &prm);
+    };
+
+    Equilibrium(State<dim>                                   &state,
+                const std::vector<Region>                    &regions,
+                typename MechanicsAssembler<dim>::Conditions &conditions,
+                const Parameters                             &parameters,
+                dealii::TimerOutput                          &timer);
+
+    /**
+     * Solve for the increment of @p interval, from the committed state.
+     * On success `increment` holds du and the trial history belongs to it.
+     */
+    Verdict
+    solve(const Interval &interval, EquilibriumReport &report);
+
+    NodalVector increment; ///< du [mm], ghosted
+
+    /** Internal minus external forces at the solution: reactions [N (per mm)].
+     */
+    const NodalVector &
+    residual() const
+    {
+      return residual_vector;
+    }
+
+    const MechanicsAssembler<dim> &
+    assembly() const
+    {
+      return assembler;
+    }
+
+    std::string
+    linear_solver_name() const
+    {
+      return system->name();
+    }
+
+  private:
+    void
+    set_constraints(const Interval &interval);
+    double
+    free_norm(const NodalVector &v) const;
+    AssemblyResult
+    assemble(const NodalVector &du, const bool matrix, const bool lift);
+
+    State<dim>                                   &state;
+    typename MechanicsAssembler<dim>::Conditions &conditions;
+    const Parameters                             &parameters;
+    dealii::TimerOutput                          &timer;
+    MechanicsAssembler<dim>                       assembler;
+    dealii::AffineConstraints<double> prescribed; ///< with inhomogeneities
+    dealii::AffineConstraints<double> held;       ///< the same, homogeneous
+    std::unique_ptr<LinearSystem>     system;
+    NodalVector                       residual_vector;
+    NodalVector                       lifted;
+  };
+} // namespace alveolus
+
+#endif

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/assembly/step_geometry.h>
+#include <alveolus/base/errors.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+namespace alveolus
+{
+  using namespace dealii;
+
+  template <int dim>
+  StepGeometry<dim>::StepGeometry(const Configuration<dim> &configuration)
+    : quadrature(QGauss<dim>(configuration.degree + 1))
+    , n_points(quadrature.size())
+    , n_nodes(configuration.fe.n_dofs_per_cell() / dim)
+    , configuration(configuration)
+    , slot(configuration.mesh.triangulation->n_active_cells(),
+           numbers::invalid_unsigned_int)
+  {
+    unsigned int n_owned = 0;
+    for (const auto &cell : configuration.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        slot[cell->active_cell_index()] = n_owned++;
+    all_gradients.resize(static_cast<std::size_t>(n_owned) * n_points *
+                         n_nodes);
+    all_weights.resize(static_cast<std::size_t>(n_owned) * n_points);
+  }
+
+
+
+  template <int dim>
+  void
+  StepGeometry<dim>::update()
+  {
+    const FE_Q<dim> scalar_fe(configuration.degree);
+    // Jacobians instead of JxW: deal.II aborts on the latter for inverted
+    // cells, which we want to report.
+    FEValues<dim> fe_values(configuration.mapping(),
+                            scalar_fe,
+                            quadrature,
+                            update_gradients | update_jacobians);
+    for (const auto &cell :
+         configuration.mesh.triangulation->active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          fe_values.reinit(cell);
+          const std::size_t first =
+            static_cast<std::size_t>(slot[cell->active_cell_index()]) *
+            n_points;
+          for (unsigned int q = 0; q < n_points; ++q)
+            {
+              const double J =
+                determinant(Tensor<2, dim>(fe_values.jacobian(q)));
+              if (!(J > 0.))
+                throw RunError("mesh",
+                               "an element is inverted at its quadrature point",
+                               "start from a valid mesh");
+              all_weights[first + q] = J * quadrature.weight(q);
+              for (unsigned int a = 0; a < n_nodes; ++a)
+                all_gradients[(first + q) * n_nodes + a] =
+                  fe_values.shape_grad(a, q);
+            }
+        }
+  }
+
+
+
+  template <int dim>
+  std::size_t
+  StepGeometry<dim>::memory_consumption() const
+  {
+    return all_gradients.size() * sizeof(Tensor<1, dim>) +
+           all_weights.size() * sizeof(double) +
+           slot.size() * sizeof(unsigned int);
+  }
+
+  template class StepGeometry<2>;
+  template class StepGeometry<3>;
+} // namespace alveolus

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/solver/equilibrium.h>
+
+#include <deal.II/dofs/dof_tools.h>
+
+namespace alveolus
+{
+  using namespace dealii;
+
+  template <int dim>
+  void
+  Equilibrium<dim>::Parameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Tolerance",
+                      tolerance,
+                      "Newton stops when the sum of |residual forces| is below "
+                      "this part of the sum of |internal nodal forces|.",
+                      Patterns::Double(1e-15, 1e-2));
+    prm.add_parameter("Absolute tolerance",
+                      absolute_tolerance,
+                      "... or below this force [N per mm of thickness].",
+                      Patterns::Double(0.));
+    prm.add_parameter("Maximum iterations",
+                      max_iterations,
+                      "Newton iterations after which a step is repeated with a "
+                      "smaller increment.",
+                      Patterns::Integer(1, 1000));
+    prm.add_parameter("Maximum line search steps",
+                      max_line_search,
+                      "Halvings of a Newton step that does not reduce the "
+                      "residual.",
+                      Patterns::Integer(0, 50));
+    prm.add_parameter(
+      "Predictor",
+      predictor,
+      "First guess of an increment: the last one, scaled by the "
+      "step (extrapolated), or the solution of the linearised "
+      "problem (linear).",
+      Patterns::Selection("extrapolated|linear"));
+    prm.add_parameter("Linear solver",
+                      linear_solver,
+                      "automatic is UMFPACK on one process, MUMPS on several; "
+                      "multigrid is CG with Trilinos ML.",
+                      Patterns::Selection("automatic|UMFPACK|MUMPS|multigrid"));
+    prm.add_parameter(
+      "Linear tolerance",
+      linear_tolerance,
+      "Relative residual at which iterative linear solvers stop.",
+      Patterns::Double(1e-15, 0.1));
+  }
+
+
+
+  template <int dim>
+  Equilibrium<dim>::Equilibrium(
+    State<dim>                                   &state,
+    const std::vector<Region>                    &regions,
+    typename MechanicsAssembler<dim>::Conditions &conditions,
+    const Parameters                             &parameters,
+    TimerOutput                                  &timer)
+    : increment(state.configuration.make_vector())
+    , state(state)
+    , conditions(conditions)
+    , parameters(parameters)
+    , timer(timer)
+    , assembler(state, regions, conditions)
+    , residual_vector(state.configuration.make_vector())
+    , lifted(state.configuration.make_vector())
+  {
+    // Which dofs are constrained does not change in time, only their values.
+    for (auto &condition : conditions)
+      condition->begin_step(state, Interval{state.time, state.time});
+    set_constraints(Interval{state.time, state.time});
+    system = make_linear_system(state.configuration.dof_handler,
+                                held,
+                                parameters.linear_solver,
+                                parameters.linear_tolerance);
+  }
+
+
+
+  template <int dim>
+  void
+  Equilibrium<dim>::set_constraints(const Interval &interval)
+  {
+    PrescribedIncrements increments;
+    for (const auto &condition : conditions)
+      condition->prescribe(state, interval, increments);
+    prescribed.reinit(state.configuration.locally_relevant);
+    held.reinit(state.configuration.locally_relevant);
+    for (const auto &[dof, value] : increments.all())
+      {
+        prescribed.add_line(dof);
+        prescribed.set_inhomogeneity(dof, value.first);
+        held.add_line(dof);
+      }
+    prescribed.close();
+    held.close();
+  }
+
+
+
+  template <int dim>
+  double
+  Equilibrium<dim>::free_norm(const NodalVector &v) const
+  {
+    double sum = 0.;
+    for (const auto i : state.configuration.locally_owned)
+      if (!held.is_constrained(i))
+        sum += std::abs(v(i));
+    return Utilities::MPI::sum(sum, state.configuration.communicator());
+  }
+
+
+
+  template <int dim>
+  AssemblyResult
+  Equilibrium<dim>::assemble(const NodalVector &du,
+                             const bool         matrix,
+                             const bool         lift)
+  {
+    TimerOutput::Scope scope(timer, "assembly");
+    return assembler.assemble(du,
+                              AssemblyTarget{residual_vector,
+                                             matrix ? system.get() : nullptr,
+                                             lift ? &prescribed : nullptr,
+                                             lift ? &lifted : nullptr});
+  }
+
+
+
+  template <int dim>
+  Verdict
+  Equilibrium<dim>::solve(const Interval &interval, EquilibriumReport &report)
+  {
+    const auto repeat = [](const std::string &reason) {
+      return Verdict{Verdict::Kind::repeat, reason};
+    };
+    assembler.begin_step(interval);
+    set_constraints(interval);
+    const auto &owned = state.configuration.locally_owned;
+    NodalVector correction(state.configuration.make_vector());
+    NodalVector trial(state.configuration.make_vector());
+
+    // The first guess. An extrapolation that folds the mesh is given up for
+    // the linearised problem, which only needs the last state.
+    bool           lift = true;
+    AssemblyResult result;
+    increment.zero_out_ghost_values();
+    if (parameters.predictor == "extrapolated" && state.last_step > 0.)
+      {
+        increment = state.increment;
+        increment.zero_out_ghost_values();
+        increment *= (interval.end - interval.begin) / state.last_step;
+        for (const auto i : owned)
+          if (prescribed.is_constrained(i))
+            increment(i) = prescribed.get_inhomogeneity(i);
+        increment.update_ghost_values();
+        result = assemble(increment, true, false);
+        lift   = !result.good;
+      }
+    if (lift)
+      {
+        increment.zero_out_ghost_values();
+        increment = 0.;
+        increment.update_ghost_values();
+        result = assemble(increment, true, true);
+        if (!result.good)
+          return repeat(result.reason);
+      }
+
+    for (;;)
+      {
+        const double norm  = free_norm(residual_vector);
+        const double scale = std::max(result.force_scale, 1e-300);
+        report.residuals.push_back(norm / scale);
+        report.energy = result.energy;
+        if (!std::isfinite(norm))
+          return repeat("the residual is not a finite number");
+        if (!lift && (norm <= parameters.tolerance * result.force_scale ||
+                      norm <= parameters.absolute_tolerance))
+          return Verdict{};
+        if (report.n_iterations >= parameters.max_iterations)
+          return repeat("Newton did not converge in " +
+                        std::to_string(report.n_iterations) +
+                        " iterations (residual " +
+                        Utilities::to_string(norm / scale) + ")");
+
+        residual_vector *= -1.;
+        if (lift)
+          residual_vector += lifted;
+        {
+          TimerOutput::Scope scope(timer, "linear solver");
+          try
+            {
+              system->solve(correction, residual_vector);
+            }
+          catch (const RunError &error)
+            {
+              return repeat(error.what());
+            }
+        }
+        ++report.n_iterations;
+        report.n_linear_iterations += system->n_iterations();
+        if (lift)
+          {
+            correction.zero_out_ghost_values();
+            for (const auto i : owned)
+              if (prescribed.is_constrained(i))
+                correction(i) = prescribed.get_inhomogeneity(i);
+            correction.update_ghost_values();
+          }
+
+        // Backtracking: the full step is assembled with its matrix at once,
+        // because it is nearly always taken. The first, inhomogeneous step
+        // cannot be shortened (it would miss the prescribed values), only
+        // judged.
+        double       fraction = 1.;
+        unsigned int halvings = 0;
+        for (;; ++halvings)
+          {
+            trial.zero_out_ghost_values();
+            trial = increment;
+            trial.zero_out_ghost_values();
+            trial.add(fraction, correction);
+            trial.update_ghost_values();
+            result = assemble(trial, true, false);
+            if (result.good &&
+                (lift ||
+                 free_norm(residual_vector) < (1. - 1e-4 * fraction) * norm ||
+                 free_norm(residual_vector) <=
+                   parameters.tolerance * result.force_scale ||
+                 halvings == parameters.max_line_search))
+              break;
+            if (lift || halvings == parameters.max_line_search)
+              return repeat(result.reason);
+            fraction /= 2.;
+          }
+        report.n_line_search += halvings;
+        increment.zero_out_ghost_values();
+        increment = trial;
+        increment.update_ghost_values();
+        lift = false;
+      }
+  }
+
+  template class Equilibrium<2>;
+  template class Equilibrium<3>;
+} // namespace alveolus
