@@ -1,6 +1,151 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-int
-main()
+#include <alveolus/driver/simulation.h>
+
+#include <boost/program_options.hpp>
+
+#include <iostream>
+
+namespace
 {
-  return 0;
+  using namespace dealii;
+  using namespace alveolus;
+
+  struct Options
+  {
+    std::string              scene, output;
+    std::vector<std::string> sets;
+    bool                     validate = false, quiet = false;
+    unsigned int             threads = 0;
+  };
+
+
+
+  template <int dim>
+  int
+  simulate(const ParameterText &text, const Options &options)
+  {
+    Log log(Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0,
+            options.quiet);
+    Scene<dim> scene(text);
+    if (!options.output.empty())
+      scene.output_directory = options.output;
+    Simulation<dim> simulation(scene, MPI_COMM_WORLD, log);
+    if (options.validate)
+      {
+        simulation.describe();
+        return 0;
+      }
+    return simulation.run() ? 0 : 1;
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  namespace po = boost::program_options;
+  Options                 options;
+  po::options_description all("alveolus [options] SCENE.prm");
+  all.add_options()("help,h", "this text")("version", "print the version")(
+    "set",
+    po::value(&options.sets),
+    "'Section/Subsection/Parameter=value', overrides the file (repeatable)")(
+    "output", po::value(&options.output), "output folder")(
+    "validate",
+    po::bool_switch(&options.validate),
+    "parse, mesh, check, say what is modelled and what not; solve nothing")(
+    "print-parameters",
+    "with a scene: its parameters with all defaults; without: the reference of "
+    "all parameters as Markdown")("threads",
+                                  po::value(&options.threads),
+                                  "threads per process (default: all cores)")(
+    "quiet", po::bool_switch(&options.quiet), "no messages on the screen")(
+    "scene", po::value(&options.scene), "the parameter file");
+  po::positional_options_description positional;
+  positional.add("scene", 1);
+  po::variables_map given;
+  try
+    {
+      po::store(po::command_line_parser(argc, argv)
+                  .options(all)
+                  .positional(positional)
+                  .run(),
+                given);
+      po::notify(given);
+    }
+  catch (const po::error &error)
+    {
+      std::cerr << "alveolus: " << error.what() << "; see alveolus --help\n";
+      return 2;
+    }
+  if (given.count("help") > 0)
+    {
+      std::cout << all
+                << "\nExit codes: 0 completed, 1 stopped early (results and "
+                   "reason on disk), 2 bad input or usage.\n";
+      return 0;
+    }
+  if (given.count("version") > 0)
+    {
+      std::cout << "alveolus " ALVEOLUS_VERSION " (deal.II "
+                << DEAL_II_PACKAGE_VERSION << ")\n";
+      return 0;
+    }
+
+  deal_II_exceptions::suppress_stacktrace_in_exceptions();
+  Utilities::MPI::MPI_InitFinalize mpi(
+    argc,
+    argv,
+    options.threads > 0 ? options.threads : numbers::invalid_unsigned_int);
+  const bool speaks = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  try
+    {
+      if (given.count("print-parameters") > 0 && options.scene.empty())
+        {
+          if (speaks)
+            write_reference(std::cout);
+          return 0;
+        }
+      if (options.scene.empty())
+        throw InputError("usage",
+                         "no parameter file given",
+                         "write alveolus SCENE.prm, or see alveolus --help");
+      const ParameterText text =
+        ParameterText::read(options.scene, options.sets);
+      const bool three = text.value("Dimension", "2") == "3";
+      if (given.count("print-parameters") > 0)
+        {
+          if (speaks && three)
+            Scene<3>(text).write_resolved(std::cout);
+          else if (speaks)
+            Scene<2>(text).write_resolved(std::cout);
+          return 0;
+        }
+      return three ? simulate<3>(text, options) : simulate<2>(text, options);
+    }
+  catch (const InputError &error)
+    {
+      if (speaks)
+        std::cerr << "alveolus: " << error.what() << std::endl;
+      return 2;
+    }
+  catch (const UserError &error)
+    {
+      if (speaks)
+        std::cerr << "alveolus: " << error.what() << std::endl;
+      return 1;
+    }
+  catch (const ExceptionBase &error)
+    {
+      std::ostringstream message;
+      error.print_info(message);
+      if (speaks)
+        std::cerr << "alveolus: internal error: " << message.str() << std::endl;
+      return 1;
+    }
+  catch (const std::exception &error)
+    {
+      if (speaks)
+        std::cerr << "alveolus: " << error.what() << std::endl;
+      return 1;
+    }
 }

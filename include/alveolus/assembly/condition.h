@@ -5,6 +5,8 @@
 #include <alveolus/algebra/linear_system.h>
 #include <alveolus/base/registry.h>
 #include <alveolus/mesh/nodes.h>
+#include <alveolus/materials/interface_law.h>
+#include <alveolus/state/face_history.h>
 #include <alveolus/state/state.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -67,6 +69,10 @@ namespace alveolus
         const std::vector<dealii::types::global_dof_index> &dofs) const;
   };
 
+  /** The scene's interface laws by name. */
+  using InterfaceLaws =
+    std::map<std::string, std::unique_ptr<InterfaceLaw>>;
+
   /** A named number for the history file. */
   using Recorded = std::pair<std::string, double>;
 
@@ -84,6 +90,12 @@ namespace alveolus
     /** Add the parameters, bound to members, to the current subsection. */
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
+
+    /** Offer the scene's interface laws by their names. */
+    virtual void
+    choose_interface_law(const InterfaceLaws & /*laws*/,
+                         const std::string & /*where*/)
+    {}
 
     /**
      * Resolve names on the mesh; called at the start and after each remesh.
@@ -115,6 +127,25 @@ namespace alveolus
     virtual void
     commit()
     {}
+
+    /** History on the condition's boundary, to be moved by rezoning; or null. */
+    virtual FaceHistory<dim> *
+    face_history()
+    {
+      return nullptr;
+    }
+
+    /**
+     * Quantities of this condition for the history file, with units in their
+     * names (collective).
+     * @param reactions internal minus external forces at the solution
+     */
+    virtual std::vector<Recorded>
+    record(const State<dim> & /*state*/,
+           const NodalVector & /*reactions*/) const
+    {
+      return {};
+    }
 
     /** One line that says what is modelled, for `--validate`. */
     virtual std::string

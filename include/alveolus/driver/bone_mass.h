@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_driver_bone_mass_h
+#define alveolus_driver_bone_mass_h
+
+#include <alveolus/state/state.h>
+#include <alveolus/transfer/subcells.h>
+#include <alveolus/transfer/swept_transfer.h>
+
+#include <utility>
+
+namespace alveolus
+{
+  /**
+   * Books of the bone mass M = sum rho V over the sub-cells of all regions with
+   * a density [mg, per mm of thickness in 2D]: what remodelling added, what the
+   * volume change of the Lagrangian phase did, what crossed boundaries and what
+   * the transfers lost (theory, section 8).
+   */
+  template <int dim>
+  class BoneMass
+  {
+  public:
+    explicit BoneMass(const State<dim> &state);
+
+    /** True if some region of the state has a density. */
+    static bool
+    present(const State<dim> &state);
+
+    /**
+     * Book a Lagrangian step before its commit: volume change at the old
+     * density, then the change of density at the new volume.
+     */
+    void
+    book_step(const State<dim> &state, const NodalVector &new_positions);
+
+    /** Book a transfer to the mesh that the configuration has now. */
+    void
+    book_transfer(const State<dim> &state, const TransferReport &report);
+
+    double mass             = 0.; ///< now
+    double initial          = 0.;
+    double by_remodelling   = 0.; ///< all cumulative
+    double by_volume_change = 0.;
+    double through_boundary = 0.;
+
+    /** What is not explained, relative to the initial mass. */
+    double
+    balance() const
+    {
+      return (mass - initial - by_remodelling - by_volume_change -
+              through_boundary) /
+             initial;
+    }
+
+    /** Least and greatest density of the old records (collective). */
+    std::pair<double, double>
+    extremes(const State<dim> &state) const;
+
+  private:
+    double
+    content(const State<dim>          &state,
+            const std::vector<double> &volumes,
+            const bool                 trial) const;
+
+    SubCells<dim>       cells;
+    std::vector<double> volumes; ///< of the current mesh
+  };
+} // namespace alveolus
+
+#endif

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_scene_scene_h
+#define alveolus_scene_scene_h
+
+#include <alveolus/assembly/mechanics_assembler.h>
+#include <alveolus/io/recorder.h>
+#include <alveolus/mesh/mesh_source.h>
+#include <alveolus/rezoning/rezoner.h>
+#include <alveolus/scene/parameter_text.h>
+#include <alveolus/solver/staggered_step.h>
+#include <alveolus/solver/step_control.h>
+#include <alveolus/transfer/transfer_scheme.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <iosfwd>
+#include <memory>
+
+namespace alveolus
+{
+  /**
+   * A parameter file turned into objects. A scene is composed of named parts:
+   * the collections Regions, Materials, Interfaces, Remodelling, Conditions,
+   * Rezoning and Records list their members in `Names`; each member is a
+   * subsection whose `Type` chooses a registered class, which declares its own
+   * parameters. The constructor makes the objects, so that they can declare,
+   * and then sets every entry strictly.
+   */
+  template <int dim>
+  class Scene
+  {
+  public:
+    /** @throws InputError with every problem of the parameter file */
+    explicit Scene(const ParameterText &text);
+
+    struct Region
+    {
+      std::string name;
+      std::string on;
+      std::string material;
+      std::string treatment   = "mean dilatation";
+      std::string remodelling = "none";
+    };
+
+    template <class Interface>
+    struct Named
+    {
+      std::string                name;
+      std::string                where; ///< path of the subsection
+      std::string                type;
+      std::unique_ptr<Interface> object;
+    };
+
+    std::string  title;
+    unsigned int degree = 1;
+    std::string  mesh_type;
+
+    std::unique_ptr<MeshSource<dim>>         mesh_source;
+    std::vector<Region>                      regions;
+    std::vector<Named<Material>>             materials;
+    InterfaceLaws                            interface_laws;
+    std::vector<Named<RemodellingLaw>>       remodelling_laws;
+    std::vector<Named<Condition<dim>>>       conditions;
+    std::vector<Named<RezoningRule<dim>>>    rezoning_rules;
+    std::vector<Named<Recorder<dim>>>        recorders;
+
+    typename Equilibrium<dim>::Parameters   solver;
+    typename StaggeredStep<dim>::Parameters coupling;
+
+    std::string transfer_scheme        = "Godunov";
+    double      largest_donor_fraction = 0.5;
+
+    std::string inverted_corners = "stop";
+    double      minimum_quality  = -1.;
+
+    StepControl::Parameters time;
+
+    std::string output_directory;
+    double      field_interval = 0.;
+    bool        fields         = true;
+
+    /** Index of the remodelling law of a region, or -1. */
+    int
+    remodelling_of(const Region &region) const;
+    /** Index of the material of a region. */
+    unsigned int
+    material_of(const Region &region) const;
+
+    /** The resolved parameters, with defaults, in the input format. */
+    void
+    write_resolved(std::ostream &out) const;
+
+    std::string input_directory; ///< folder of the parameter file
+
+  private:
+    void
+    declare();
+
+    template <class Interface>
+    std::vector<Named<Interface>>
+    make_collection(const std::string &section);
+
+    const ParameterText             &text;
+    dealii::ParameterHandler         prm;
+    std::vector<Named<InterfaceLaw>> interface_law_list;
+  };
+
+  /**
+   * Reference of every registered class with its text and parameters, and of
+   * the fixed sections, as Markdown.
+   */
+  void
+  write_reference(std::ostream &out);
+} // namespace alveolus
+
+#endif
