@@ -39,8 +39,8 @@ namespace alveolus
 
     template <int dim>
     std::vector<double>
-    knots_of(const std::vector<Point<dim>>        &points,
-             const bool                            closed,
+    knots_of(const std::vector<Point<dim>>         &points,
+             const bool                             closed,
              const typename CubicSpline<dim>::Knots kind)
     {
       std::vector<double> t(1, 0.);
@@ -48,11 +48,11 @@ namespace alveolus
       for (std::size_t i = 1; i < (closed ? n + 1 : n); ++i)
         {
           const double chord = points[i % n].distance(points[i - 1]);
-          t.push_back(t.back() +
-                      (kind == CubicSpline<dim>::Knots::chord_length ? chord :
-                       kind == CubicSpline<dim>::Knots::centripetal ?
-                                                                       std::sqrt(chord) :
-                                                                       1.));
+          t.push_back(t.back() + (kind == CubicSpline<dim>::Knots::chord_length
+                                    ? chord
+                                  : kind == CubicSpline<dim>::Knots::centripetal
+                                    ? std::sqrt(chord)
+                                    : 1.));
         }
       return t;
     }

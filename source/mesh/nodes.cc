@@ -85,8 +85,8 @@ namespace alveolus
       throw InputError("Polynomial degree of the mesh",
                        "found " + std::to_string(configuration.degree),
                        "choose 1 or 2");
-    const auto                          &fe = configuration.fe;
-    std::vector<types::global_dof_index> dof_indices(fe.n_dofs_per_cell());
+    const auto                              &fe = configuration.fe;
+    std::vector<types::global_dof_index>     dof_indices(fe.n_dofs_per_cell());
     std::array<types::global_dof_index, dim> dofs_of_node;
     for (const auto &cell : configuration.dof_handler.active_cell_iterators())
       if (!cell->is_artificial())
@@ -185,7 +185,7 @@ namespace alveolus
     const typename DoFHandler<dim>::active_cell_iterator &cell,
     std::vector<NodeId>                                  &nodes) const
   {
-    const auto                                 &fe = configuration.fe;
+    const auto                                       &fe = configuration.fe;
     thread_local std::vector<types::global_dof_index> dof_indices;
     dof_indices.resize(fe.n_dofs_per_cell());
     cell->get_dof_indices(dof_indices);
@@ -245,9 +245,9 @@ namespace alveolus
               const NodeId b =
                 nodes[GeometryInfo<dim>::line_to_cell_vertices(l, 1)];
               const NodeId middle =
-                configuration.degree == 2 ?
-                  nodes[GeometryInfo<dim>::vertices_per_cell + l] :
-                  a;
+                configuration.degree == 2
+                  ? nodes[GeometryInfo<dim>::vertices_per_cell + l]
+                  : a;
               mine.insert(mine.end(), {std::min(a, b), middle, std::max(a, b)});
             }
     std::map<NodeId, std::map<NodeId, NodeId>> neighbours;
@@ -268,8 +268,7 @@ namespace alveolus
     std::vector<NodeId> vertices;
     for (const auto &entry : neighbours)
       vertices.push_back(entry.first);
-    const auto positions =
-      gather(configuration.initial_positions(), vertices);
+    const auto positions = gather(configuration.initial_positions(), vertices);
     std::map<NodeId, Point<dim>> position;
     for (std::size_t i = 0; i < vertices.size(); ++i)
       position[vertices[i]] = positions[i];
@@ -301,10 +300,9 @@ namespace alveolus
 
     NodeCurve result;
     result.closed = ends.empty();
-    NodeId here   = *std::min_element(
-      (result.closed ? vertices : ends).begin(),
-      (result.closed ? vertices : ends).end(),
-      before);
+    NodeId here   = *std::min_element((result.closed ? vertices : ends).begin(),
+                                    (result.closed ? vertices : ends).end(),
+                                    before);
     const NodeId first = here;
     NodeId       last  = here; // where the walk came from
     std::size_t  n     = 0;
@@ -312,14 +310,14 @@ namespace alveolus
       {
         result.nodes.push_back(here);
         // The first step of a closed curve goes to the smaller neighbour.
-        const auto next = std::min_element(
-          neighbours[here].begin(),
-          neighbours[here].end(),
-          [&](const auto &a, const auto &b) {
-            if ((a.first == last) != (b.first == last))
-              return b.first == last;
-            return before(a.first, b.first);
-          });
+        const auto next =
+          std::min_element(neighbours[here].begin(),
+                           neighbours[here].end(),
+                           [&](const auto &a, const auto &b) {
+                             if ((a.first == last) != (b.first == last))
+                               return b.first == last;
+                             return before(a.first, b.first);
+                           });
         if (next->first == last)
           break;
         ++n;
@@ -339,8 +337,8 @@ namespace alveolus
   std::vector<NodeId>
   Nodes<dim>::on_curve(const std::string &name, const std::string &where) const
   {
-    const CurveIds ids   = curve_ids(configuration.mesh.names, name, where);
-    NodalVector    marks = configuration.make_vector();
+    const CurveIds      ids = curve_ids(configuration.mesh.names, name, where);
+    NodalVector         marks = configuration.make_vector();
     std::vector<NodeId> nodes;
     for (const auto &cell : configuration.dof_handler.active_cell_iterators())
       if (!cell->is_artificial())
@@ -364,9 +362,9 @@ namespace alveolus
   std::vector<NodeId>
   Nodes<dim>::boundary(const std::string &name, const std::string &where) const
   {
-    const auto &ids   = configuration.mesh.names.boundary(name, where);
-    NodalVector marks = configuration.make_vector();
-    const auto &fe    = configuration.fe.base_element(0);
+    const auto         &ids   = configuration.mesh.names.boundary(name, where);
+    NodalVector         marks = configuration.make_vector();
+    const auto         &fe    = configuration.fe.base_element(0);
     std::vector<NodeId> nodes;
     for (const auto &cell : configuration.dof_handler.active_cell_iterators())
       if (!cell->is_artificial())
@@ -386,8 +384,8 @@ namespace alveolus
   std::vector<NodeId>
   Nodes<dim>::region(const std::string &name, const std::string &where) const
   {
-    const auto &ids   = configuration.mesh.names.region(name, where);
-    NodalVector marks = configuration.make_vector();
+    const auto         &ids   = configuration.mesh.names.region(name, where);
+    NodalVector         marks = configuration.make_vector();
     std::vector<NodeId> nodes;
     for (const auto &cell : configuration.dof_handler.active_cell_iterators())
       if (!cell->is_artificial() && ids.count(cell->material_id()) > 0)

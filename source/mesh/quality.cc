@@ -63,8 +63,8 @@ namespace alveolus
                const std::set<types::material_id> &regions,
                Vector<float>                      *per_cell)
   {
-    constexpr unsigned int n_vertices = GeometryInfo<dim>::vertices_per_cell;
-    const auto            &fe         = configuration.fe;
+    constexpr unsigned int n_vertices  = GeometryInfo<dim>::vertices_per_cell;
+    const auto            &fe          = configuration.fe;
     const auto            &dof_handler = configuration.dof_handler;
 
     static const std::array<ShapeGradients<dim>, 2> shapes{
@@ -149,7 +149,9 @@ namespace alveolus
 
     // One collective call; equal values are decided by the place, so that the
     // answer is the same for any number of processes.
-    std::vector<double> mine = {corners.value, points.value, double(n_inverted)};
+    std::vector<double> mine = {corners.value,
+                                points.value,
+                                double(n_inverted)};
     for (unsigned int c = 0; c < dim; ++c)
       mine.push_back(corners.where[c]);
     for (unsigned int c = 0; c < dim; ++c)
@@ -158,10 +160,10 @@ namespace alveolus
     QualitySummary<dim> summary;
     summary.smallest_scaled_jacobian = std::numeric_limits<double>::max();
     summary.smallest_point_jacobian  = std::numeric_limits<double>::max();
-    const auto worse                 = [](const double                 a,
-                          const dealii::Point<dim>    &at_a,
-                          const double                 b,
-                          const dealii::Point<dim>    &at_b) {
+    const auto worse                 = [](const double              a,
+                          const dealii::Point<dim> &at_a,
+                          const double              b,
+                          const dealii::Point<dim> &at_b) {
       if (a != b)
         return a < b;
       for (unsigned int c = 0; c < dim; ++c)
@@ -178,10 +180,8 @@ namespace alveolus
             corner[c] = part[3 + c];
             point[c]  = part[3 + dim + c];
           }
-        if (worse(part[0],
-                  corner,
-                  summary.smallest_scaled_jacobian,
-                  summary.where))
+        if (worse(
+              part[0], corner, summary.smallest_scaled_jacobian, summary.where))
           {
             summary.smallest_scaled_jacobian = part[0];
             summary.where                    = corner;

@@ -23,7 +23,7 @@ namespace alveolus
   template <int dim>
   typename RezoningRule<dim>::Stage
   FixedRule<dim>::stage(const NamedSets<dim> &names,
-                         const std::string    &where) const
+                        const std::string    &where) const
   {
     return stage_of(on, names, where);
   }
@@ -31,9 +31,9 @@ namespace alveolus
   template <int dim>
   void
   FixedRule<dim>::attach(const Nodes<dim> &nodes,
-                          const NodalVector & /*positions*/,
-                          const std::set<NodeId> &taken,
-                          const std::string      &where)
+                         const NodalVector & /*positions*/,
+                         const std::set<NodeId> &taken,
+                         const std::string      &where)
   {
     components = parse_components<dim>(component_names, where);
     touched    = nodes_of(on, nodes, taken, where);
@@ -42,12 +42,12 @@ namespace alveolus
   template <int dim>
   void
   FixedRule<dim>::apply(const Nodes<dim>  &nodes,
-                         const NodalVector &start,
-                         const NodalVector & /*lagrangian*/,
-                         NodalVector       &proposed,
-                         RezoningReport & /*report*/) const
+                        const NodalVector &start,
+                        const NodalVector & /*lagrangian*/,
+                        NodalVector &proposed,
+                        RezoningReport & /*report*/) const
   {
-    copy_components(nodes, touched, components, start, proposed);
+    copy_components<dim>(nodes, touched, components, start, proposed);
   }
 
   template class FixedRule<2>;

@@ -2,6 +2,10 @@
 #include <alveolus/rezoning/follow_rule.h>
 #include <alveolus/rezoning/node_sets.h>
 
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+
 namespace alveolus
 {
   using namespace dealii;
@@ -40,11 +44,13 @@ namespace alveolus
     components = parse_components<dim>(component_names, where);
     leader     = nodes.point(leader_name, where + "/Leader");
     followers  = nodes_of(on, nodes, taken, where);
-    for (const NodeId node : followers)
-      if (node == leader)
-        throw InputError(where + "/On",
-                         "the leader '" + leader_name + "' is among them",
-                         "a point cannot follow itself");
+    const unsigned int itself =
+      std::count(followers.begin(), followers.end(), leader);
+    // Not every process sees the leader, but all have to stop.
+    if (Utilities::MPI::max(itself, nodes.configuration.communicator()) > 0)
+      throw InputError(where + "/On",
+                       "the leader '" + leader_name + "' is among them",
+                       "a point cannot follow itself");
   }
 
   template <int dim>

@@ -14,16 +14,17 @@ namespace alveolus
                       on,
                       "Points, curves, boundaries or regions.",
                       Patterns::List(Patterns::Anything()));
-    prm.add_parameter("Components",
-                      component_names,
-                      "Components that stay with the material; none given: all.",
-                      Patterns::List(Patterns::Selection("x|y|z")));
+    prm.add_parameter(
+      "Components",
+      component_names,
+      "Components that stay with the material; none given: all.",
+      Patterns::List(Patterns::Selection("x|y|z")));
   }
 
   template <int dim>
   typename RezoningRule<dim>::Stage
   MaterialRule<dim>::stage(const NamedSets<dim> &names,
-                         const std::string    &where) const
+                           const std::string    &where) const
   {
     return stage_of(on, names, where);
   }
@@ -31,9 +32,9 @@ namespace alveolus
   template <int dim>
   void
   MaterialRule<dim>::attach(const Nodes<dim> &nodes,
-                          const NodalVector & /*positions*/,
-                          const std::set<NodeId> &taken,
-                          const std::string      &where)
+                            const NodalVector & /*positions*/,
+                            const std::set<NodeId> &taken,
+                            const std::string      &where)
   {
     components = parse_components<dim>(component_names, where);
     touched    = nodes_of(on, nodes, taken, where);
@@ -41,13 +42,13 @@ namespace alveolus
 
   template <int dim>
   void
-  MaterialRule<dim>::apply(const Nodes<dim>  &nodes,
-                         const NodalVector & /*start*/,
-                         const NodalVector &lagrangian,
-                         NodalVector       &proposed,
-                         RezoningReport & /*report*/) const
+  MaterialRule<dim>::apply(const Nodes<dim> &nodes,
+                           const NodalVector & /*start*/,
+                           const NodalVector &lagrangian,
+                           NodalVector       &proposed,
+                           RezoningReport & /*report*/) const
   {
-    copy_components(nodes, touched, components, lagrangian, proposed);
+    copy_components<dim>(nodes, touched, components, lagrangian, proposed);
   }
 
   template class MaterialRule<2>;

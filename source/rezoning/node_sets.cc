@@ -47,10 +47,10 @@ namespace alveolus
                            "the mesh has no set '" + name + "'",
                            "known are: " + list);
         }
-      return point   ? Stage<dim>::points :
-             curve   ? Stage<dim>::lines :
-             surface ? Stage<dim>::surfaces :
-                       Stage<dim>::volumes;
+      return point     ? Stage<dim>::points
+             : curve   ? Stage<dim>::lines
+             : surface ? Stage<dim>::surfaces
+                       : Stage<dim>::volumes;
     }
   } // namespace
 
@@ -90,8 +90,7 @@ namespace alveolus
         std::vector<NodeId> more;
         switch (stage_of_name(name, nodes.configuration.mesh.names, where))
           {
-            case Stage<dim>::points:
-              {
+              case Stage<dim>::points: {
                 const NodeId node = nodes.point(name, on);
                 if (nodes.is_relevant(node))
                   more = {node};
@@ -158,21 +157,21 @@ namespace alveolus
     to.update_ghost_values();
   }
 
-#define ALVEOLUS_INSTANTIATE(dim)                                     \
-  template Stage<dim> stage_of(const std::vector<std::string> &,      \
-                               const NamedSets<dim> &,                \
-                               const std::string &);                  \
-  template std::vector<NodeId> nodes_of(const std::vector<std::string> &, \
-                                        const Nodes<dim> &,           \
-                                        const std::set<NodeId> &,     \
-                                        const std::string &);         \
-  template std::bitset<dim> parse_components(                         \
-    const std::vector<std::string> &, const std::string &);           \
-  template void copy_components(const Nodes<dim> &,                   \
-                                const std::vector<NodeId> &,          \
-                                const std::bitset<dim> &,             \
-                                const NodalVector &,                  \
-                                NodalVector &);
+#define ALVEOLUS_INSTANTIATE(dim)                                              \
+  template Stage<dim>          stage_of<dim>(const std::vector<std::string> &, \
+                                    const NamedSets<dim> &,           \
+                                    const std::string &);             \
+  template std::vector<NodeId> nodes_of<dim>(const std::vector<std::string> &, \
+                                             const Nodes<dim> &,               \
+                                             const std::set<NodeId> &,         \
+                                             const std::string &);             \
+  template std::bitset<dim>    parse_components<dim>(                          \
+    const std::vector<std::string> &, const std::string &);                 \
+  template void copy_components<dim>(const Nodes<dim> &,                       \
+                                     const std::vector<NodeId> &,              \
+                                     const std::bitset<dim> &,                 \
+                                     const NodalVector &,                      \
+                                     NodalVector &);
 
   ALVEOLUS_INSTANTIATE(2)
   ALVEOLUS_INSTANTIATE(3)

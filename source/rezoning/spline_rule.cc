@@ -41,12 +41,12 @@ namespace alveolus
   {
     using Spline = CubicSpline<dim>;
     return Spline(points,
-                  closed              ? Spline::Ends::closed :
-                  (ends == "natural") ? Spline::Ends::natural :
-                                        Spline::Ends::not_a_knot,
-                  knots == "uniform"     ? Spline::Knots::uniform :
-                  knots == "centripetal" ? Spline::Knots::centripetal :
-                                           Spline::Knots::chord_length);
+                  closed                ? Spline::Ends::closed
+                  : (ends == "natural") ? Spline::Ends::natural
+                                        : Spline::Ends::not_a_knot,
+                  knots == "uniform"       ? Spline::Knots::uniform
+                  : knots == "centripetal" ? Spline::Knots::centripetal
+                                           : Spline::Knots::chord_length);
   }
 
   template <int dim>
@@ -62,9 +62,9 @@ namespace alveolus
     for (const std::string &name : on)
       {
         AnchoredCurve curve(nodes.curve(name, where + "/On"), taken);
-        curve.keep(fit(nodes.gather(positions, curve.curve.nodes),
-                       curve.curve.closed)
-                     .arc_lengths());
+        curve.keep(
+          fit(nodes.gather(positions, curve.curve.nodes), curve.curve.closed)
+            .arc_lengths());
         const auto free = curve.free_nodes();
         touched.insert(touched.end(), free.begin(), free.end());
         curves.push_back(curve);

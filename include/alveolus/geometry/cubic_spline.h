@@ -123,7 +123,7 @@ namespace alveolus
 
     bool                                closed;
     std::vector<double>                 t, s;
-    std::vector<dealii::Point<dim>>     p; ///< closed: first one repeated
+    std::vector<dealii::Point<dim>>     p;       ///< closed: first one repeated
     std::vector<dealii::Tensor<1, dim>> moments; ///< second derivatives
   };
 } // namespace alveolus

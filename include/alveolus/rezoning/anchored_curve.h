@@ -46,7 +46,8 @@ namespace alveolus
     std::pair<unsigned int, unsigned int>
     anchors(const unsigned int i) const;
 
-    /** Kept place of node i between its anchors, 0 to 1: (s_i-s_a)/(s_b-s_a). */
+    /** Kept place of node i between its anchors, 0 to 1: (s_i-s_a)/(s_b-s_a).
+     */
     double
     relative(const unsigned int i) const;
 

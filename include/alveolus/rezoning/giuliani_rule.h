@@ -13,14 +13,14 @@ namespace alveolus
    * Smoothing after S. Giuliani (Nucl. Eng. Des. 72 (1982) 205-212), in our
    * reading. Around a node P each quadrilateral has the triangle P, A, B with
    * A, B the neighbours of P along its edges. The node should stand above the
-   * middle m of the base AB (no shear) at the height H = 2 S/|AB| that gives the
-   * triangle the mean area S of those around P (no squeeze). With n the unit
-   * normal of AB on the side of the element,
+   * middle m of the base AB (no shear) at the height H = 2 S/|AB| that gives
+   * the triangle the mean area S of those around P (no squeeze). With n the
+   * unit normal of AB on the side of the element,
    *
    *   x_P = mean over the elements of (m + H n),
    *
-   * which minimises the sum of (offset along the base)^2 + (height - H)^2. In 3D
-   * the base is the triangle of the three neighbours along edges, m its
+   * which minimises the sum of (offset along the base)^2 + (height - H)^2. In
+   * 3D the base is the triangle of the three neighbours along edges, m its
    * centroid, and H = 3 V/|ABC| with the mean volume V of the tetrahedra.
    *
    * Jacobi iteration x <- x + w (x_P - x) with the factor w until no node is
@@ -92,7 +92,7 @@ namespace alveolus
     std::vector<Corner>       corners;
     /** On lines, faces (3D) and inside cells, in this order. */
     std::array<std::vector<MiddleNode>, dim> middles;
-    std::vector<NodeId> touched;
+    std::vector<NodeId>                      touched;
   };
 } // namespace alveolus
 

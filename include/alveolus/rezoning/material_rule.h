@@ -7,8 +7,8 @@
 namespace alveolus
 {
   /**
-   * Lagrangian nodes, explicitly: x_c = x_lagrangian,c in the chosen components.
-   * Useful to take nodes away from rules of later stages.
+   * Lagrangian nodes, explicitly: x_c = x_lagrangian,c in the chosen
+   * components. Useful to take nodes away from rules of later stages.
    */
   template <int dim>
   class MaterialRule : public RezoningRule<dim>

@@ -50,7 +50,7 @@ namespace alveolus
     std::vector<std::string>   on;
     std::string                ends = "not-a-knot", knots = "chord length";
     std::vector<AnchoredCurve> curves;
-    std::vector<NodeId> touched;
+    std::vector<NodeId>        touched;
   };
 } // namespace alveolus
 

@@ -43,7 +43,7 @@ namespace alveolus
   private:
     std::vector<std::string>   on;
     std::vector<AnchoredCurve> lines;
-    std::vector<NodeId> touched;
+    std::vector<NodeId>        touched;
   };
 } // namespace alveolus
 
