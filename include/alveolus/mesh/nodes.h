@@ -29,7 +29,8 @@ namespace alveolus
   /**
    * The node view of a Configuration: support points of FE_Q(degree) with their
    * dim degrees of freedom, and the nodes of named points, curves, boundaries
-   * and regions. Built once per mesh.
+   * and regions. Built once per mesh. In 2D a name of a boundary is also the
+   * name of a curve.
    */
   template <int dim>
   class Nodes
@@ -70,6 +71,14 @@ namespace alveolus
     std::vector<dealii::Point<dim>>
     gather(const NodalVector &field, const std::vector<NodeId> &nodes) const;
 
+    /**
+     * Nodes of a relevant cell in the numbering of FE_Q(degree): vertices,
+     * lines, faces (3D), interior.
+     */
+    void
+    cell_nodes(const typename dealii::DoFHandler<dim>::active_cell_iterator &c,
+               std::vector<NodeId> &nodes) const;
+
     /** Node at a named point (collective). @throws InputError */
     NodeId
     point(const std::string &name, const std::string &where) const;
@@ -81,19 +90,34 @@ namespace alveolus
     NodeCurve
     curve(const std::string &name, const std::string &where) const;
 
-    /** Relevant nodes on a named boundary piece, ascending. @throws InputError
+    /**
+     * Relevant nodes on a named curve, ascending, whatever its shape, branched
+     * or in parts (collective). @throws InputError
+     */
+    std::vector<NodeId>
+    on_curve(const std::string &name, const std::string &where) const;
+
+    /**
+     * Relevant nodes on a named boundary piece, ascending (collective).
+     * @throws InputError
      */
     std::vector<NodeId>
     boundary(const std::string &name, const std::string &where) const;
 
-    /** Relevant nodes of the cells of a named region, ascending. @throws
-     * InputError */
+    /**
+     * Relevant nodes of the cells of a named region, ascending (collective).
+     * @throws InputError
+     */
     std::vector<NodeId>
     region(const std::string &name, const std::string &where) const;
 
     const Configuration<dim> &configuration;
 
   private:
+    /** Relevant nodes among those marked by their owners, ascending. */
+    std::vector<NodeId>
+    collect(NodalVector &marks) const;
+
     std::vector<NodeId> relevant_nodes;
     std::unordered_map<NodeId, std::array<dealii::types::global_dof_index, dim>>
       components;

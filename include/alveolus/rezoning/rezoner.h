@@ -11,21 +11,16 @@
 
 namespace alveolus
 {
-  /** What came of a rezoning. */
-  struct RezoningReport
-  {
-    /** Part of the proposed motion taken: 1 unless cut back. */
-    double fraction         = 1.;
-    bool   cut_back         = false;
-    double smallest_quality = 0.; ///< scaled Jacobian after rezoning
-    double largest_motion   = 0.; ///< from the Lagrangian positions [mm]
-  };
-
   /**
    * Runs the rules (points, lines, surfaces, volumes) and returns new node
    * positions that keep every vertex Jacobian and every quadrature point
    * Jacobian positive: a proposal that would invert a cell is halved towards
-   * the Lagrangian mesh until it does not, which is reported.
+   * the Lagrangian mesh until it does not, at most 8 times; then the Lagrangian
+   * mesh is kept as it is. Both are reported.
+   *
+   * A node belongs to the first rule, by stage, that touches it. Two rules of
+   * one stage that set the same component of the same node contradict each
+   * other. Within a stage a rule builds on what the rules above it proposed.
    */
   template <int dim>
   class Rezoner
@@ -41,12 +36,18 @@ namespace alveolus
       return rules.empty();
     }
 
-    /** Attach all rules, sort them by stage, find contradictions. */
+    /**
+     * Sort the rules by stage, attach them to the mesh at @p positions, and
+     * find contradictions (collective). Called at the start and after each
+     * remesh.
+     * @throws InputError that names both rules and a place, or from a rule
+     */
     void
     attach(const Nodes<dim> &nodes, const NodalVector &positions);
 
     /**
-     * New positions for the step start -> lagrangian (nodal vectors, ghosted).
+     * New positions for the step start -> lagrangian (nodal vectors, ghosted;
+     * collective).
      */
     NodalVector
     propose(const Nodes<dim>  &nodes,

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_rezoning_material_rule_h
+#define alveolus_rezoning_material_rule_h
+
+#include <alveolus/rezoning/rezoning_rule.h>
+
+namespace alveolus
+{
+  /**
+   * Lagrangian nodes, explicitly: x_c = x_lagrangian,c in the chosen
+   * components. Useful to take nodes away from rules of later stages.
+   */
+  template <int dim>
+  class MaterialRule : public RezoningRule<dim>
+  {
+  public:
+    using Stage = typename RezoningRule<dim>::Stage;
+
+    void
+    declare_parameters(dealii::ParameterHandler &prm) override;
+    Stage
+    stage(const NamedSets<dim> &names, const std::string &where) const override;
+    void
+    attach(const Nodes<dim>       &nodes,
+           const NodalVector      &positions,
+           const std::set<NodeId> &taken,
+           const std::string      &where) override;
+    void
+    apply(const Nodes<dim>  &nodes,
+          const NodalVector &start,
+          const NodalVector &lagrangian,
+          NodalVector       &proposed,
+          RezoningReport    &report) const override;
+    const std::vector<NodeId> &
+    touched_nodes() const override
+    {
+      return touched;
+    }
+    std::bitset<dim>
+    touched_components() const override
+    {
+      return components;
+    }
+
+  private:
+    std::vector<std::string> on, component_names;
+    std::bitset<dim>         components;
+    std::vector<NodeId>      touched;
+  };
+} // namespace alveolus
+
+#endif

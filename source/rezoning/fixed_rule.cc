@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/rezoning/fixed_rule.h>
+#include <alveolus/rezoning/node_sets.h>
+
+namespace alveolus
+{
+  using namespace dealii;
+
+  template <int dim>
+  void
+  FixedRule<dim>::declare_parameters(ParameterHandler &prm)
+  {
+    prm.add_parameter("On",
+                      on,
+                      "Points, curves, boundaries or regions.",
+                      Patterns::List(Patterns::Anything()));
+    prm.add_parameter("Components",
+                      component_names,
+                      "Components that are fixed; none given: all.",
+                      Patterns::List(Patterns::Selection("x|y|z")));
+  }
+
+  template <int dim>
+  typename RezoningRule<dim>::Stage
+  FixedRule<dim>::stage(const NamedSets<dim> &names,
+                        const std::string    &where) const
+  {
+    return stage_of(on, names, where);
+  }
+
+  template <int dim>
+  void
+  FixedRule<dim>::attach(const Nodes<dim> &nodes,
+                         const NodalVector & /*positions*/,
+                         const std::set<NodeId> &taken,
+                         const std::string      &where)
+  {
+    components = parse_components<dim>(component_names, where);
+    touched    = nodes_of(on, nodes, taken, where);
+  }
+
+  template <int dim>
+  void
+  FixedRule<dim>::apply(const Nodes<dim>  &nodes,
+                        const NodalVector &start,
+                        const NodalVector & /*lagrangian*/,
+                        NodalVector &proposed,
+                        RezoningReport & /*report*/) const
+  {
+    copy_components<dim>(nodes, touched, components, start, proposed);
+  }
+
+  template class FixedRule<2>;
+  template class FixedRule<3>;
+} // namespace alveolus
+
+ALVEOLUS_REGISTER_DIM(
+  alveolus::RezoningRule,
+  alveolus::FixedRule,
+  "fixed",
+  "Eulerian nodes: in the components c of `Components` the nodes `On` go back "
+  "to where they were before the step, x_c = x_start,c, and the material flows "
+  "through the mesh. Stages as for `follow`.")
