@@ -277,37 +277,31 @@ namespace alveolus
 
         for (const auto &section : entry.section)
           prm.enter_subsection(section);
-        bool declared = true;
+        // Only set() tells of undeclared entries in a release build.
         try
           {
-            prm.get(entry.name);
+            prm.set(entry.name, entry.value);
           }
         catch (const ParameterHandler::ExcEntryUndeclared &)
           {
-            declared = false;
             problems.push_back(
               entry.origin + ": there is no parameter '" + entry.name + "'" +
               (path.empty() ? "" : " in '" + joined(path, " / ") + "'") +
               "; `--print-parameters` lists what there is");
           }
-        if (declared)
-          try
-            {
-              prm.set(entry.name, entry.value);
-            }
-          catch (const ParameterHandler::ExcValueDoesNotMatchPattern &error)
-            {
-              std::ostringstream message;
-              error.print_info(message);
-              const std::string all = message.str();
-              const auto        at  = all.find("given pattern <");
-              problems.push_back(
-                entry.origin + ": '" + path_of(entry) + "' is '" + entry.value +
-                "', but must be " +
-                (at == std::string::npos
-                   ? all
-                   : all.substr(at + 15, all.rfind('>') - at - 15)));
-            }
+        catch (const ParameterHandler::ExcValueDoesNotMatchPattern &error)
+          {
+            std::ostringstream message;
+            error.print_info(message);
+            const std::string all = message.str();
+            const auto        at  = all.find("given pattern <");
+            problems.push_back(
+              entry.origin + ": '" + path_of(entry) + "' is '" + entry.value +
+              "', but must be " +
+              (at == std::string::npos
+                 ? all
+                 : all.substr(at + 15, all.rfind('>') - at - 15)));
+          }
         for (unsigned int i = 0; i < entry.section.size(); ++i)
           prm.leave_subsection();
       }
