@@ -167,6 +167,8 @@ def edge_actor(grid):
     mapper.SetResolveCoincidentTopologyToPolygonOffset()
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
+    if grid.GetBounds()[5] - grid.GetBounds()[4] < 1e-9:
+        actor.SetPosition(0, 0, 0.5)  # before the cells, seen from above
     actor.GetProperty().LightingOff()
     actor.GetProperty().SetColor(0.15, 0.15, 0.15)
     actor.GetProperty().SetLineWidth(1.2)

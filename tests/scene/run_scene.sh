@@ -34,6 +34,10 @@ scene=$1 program=$2 numdiff=$3 work=$4
 shift 4
 launcher=("$@")
 
+# From the top folder, so that messages are the same wherever the build is
+cd "$(dirname "$scene")/../.."
+scene=tests/scene/$(basename "$scene")
+
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
 # All values of a key, one a line
@@ -132,7 +136,7 @@ awk -F, -v columns="$columns" -v rows="$(value rows last)" '
       v = $at[name[k]]
       if (v !~ /^[-+]?[0-9.]+(e[-+]?[0-9]+)?$/)
         fail(name[k] " is " v " in row " NR - 1)
-      printf "%s%.11g", k > 1 ? " " : "", v / scale[k]
+      printf "%s%.11g", (k > 1 ? " " : ""), v / scale[k]
     }
     print ""
   }
@@ -149,7 +153,7 @@ awk -F, -v columns="$columns" -v rows="$(value rows last)" '
       }
       name[k] = trim(name[k])
       if (!(name[k] in at)) fail("no column \"" name[k] "\"")
-      printf "%s%s", k > 1 ? "; " : "# ", name[k]
+      printf "%s%s", (k > 1 ? "; " : "# "), name[k]
     }
     print ""
     every = rows ~ /^every [0-9]+$/ ? substr(rows, 7) + 0 : 0
