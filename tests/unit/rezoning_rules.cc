@@ -48,8 +48,7 @@ namespace
                                               corner,
                                               true);
     for (const auto &cell : mesh.triangulation->active_cell_iterators())
-      if (cell->center()[0] > 0.5)
-        cell->set_material_id(1);
+      cell->set_material_id(cell->center()[0] > 0.5);
     auto &names                  = mesh.names;
     names.points["O"]            = Point<dim>();
     names.points["X"]            = Point<dim>::unit_vector(0);
@@ -136,13 +135,13 @@ namespace
 
   /** Attach the rules to @p attached and run them on a step. */
   template <int dim>
-  struct Run
+  struct Rezoning
   {
-    Run(const Bench<dim> &bench)
+    Rezoning(const Bench<dim> &bench)
       : bench(bench)
     {}
 
-    Run &
+    Rezoning &
     add(const std::string &type, const Settings &settings)
     {
       rezoner.add(make_rule<dim>(type, settings),
@@ -218,8 +217,8 @@ follow_fixed_material(const unsigned int degree)
   const auto near = [](const double a, const double b) {
     return std::abs(a - b) < 1e-10;
   };
-  const auto lagrangian = bench.map(f);
-  Run<dim>   run(bench);
+  const auto    lagrangian = bench.map(f);
+  Rezoning<dim> run(bench);
   // Y follows X in x, although the material takes it further; the right
   // boundary follows Y, which a rule has moved before, in all components.
   run.add("follow", {{"On", "right"}, {"Leader", "Y"}});
@@ -252,9 +251,11 @@ follow_fixed_material(const unsigned int degree)
     return x;
   };
   EXPECT_LT(bench.distance(x, expected), 1e-14);
+  // The fixed node of the left boundary that is highest; in 2D Y is another's.
+  const double height = dim == 2 ? 1. - 0.5 / degree : 1.;
   EXPECT_NEAR(run.report.largest_motion,
-              std::hypot(0.15, 0.2), // left boundary below Y
-              degree == 1 ? 0.03 : 0.015);
+              std::hypot(0.1 + 0.05 * height, 0.2),
+              1e-14);
 }
 
 TEST(Rules, FollowFixedMaterial)
@@ -272,17 +273,18 @@ TEST(Rules, StraightKeepsSpacing)
     {
       const Bench<2> bench(unit_mesh<2>(6), degree);
       // Graded towards the left, then a bulge, and the end X moves.
-      const auto graded     = bench.map([](const Point<2> &X) {
+      const auto  graded     = bench.map([](const Point<2> &X) {
         return Point<2>((X[0] + X[0] * X[0]) / 2., X[1]);
       });
-      const auto lagrangian = bench.map([](const Point<2> &X) {
+      const auto  lagrangian = bench.map([](const Point<2> &X) {
         return Point<2>((X[0] + X[0] * X[0]) / 2. + 0.02 * std::sin(9. * X[0]),
-                        X[1] - 0.1 * std::sin(M_PI * X[0]));
+                        X[1] - 0.05 * std::sin(M_PI * X[0]));
       });
-      Run<2>     run(bench);
+      Rezoning<2> run(bench);
       run.add("straight", {{"On", "bottom, top"}});
       const auto   x   = run(graded, graded, lagrangian);
       const double end = 1. + 0.02 * std::sin(9.);
+      EXPECT_EQ(run.report.fraction, 1.);
       EXPECT_LT(bench.distance(
                   x,
                   [&](const Point<2> &X) {
@@ -301,7 +303,7 @@ TEST(Rules, StraightKeepsSpacing)
         return Point<2>(X[0] + (is_inside(X) ? 0. : 0.03 * noise(X, 3)),
                         X[1] - 0.1 * X[0] * (1. - X[0]));
       });
-      Run<2>         run_2(bench_2);
+      Rezoning<2>    run_2(bench_2);
       run_2.add("straight", {{"On", "bottom"}});
       run_2.add("fixed", {{"On", "N, O, X"}});
       EXPECT_LT(bench_2.distance(
@@ -335,11 +337,11 @@ TEST(Rules, SplineIsExactOnACubic)
             t / n / 6.;
         return sum;
       };
-      const auto lagrangian = bench.map([&](const Point<2> &X) {
+      const auto  lagrangian = bench.map([&](const Point<2> &X) {
         return Point<2>((1. - X[1]) * P(X[0]) +
                         X[1] * Point<2>(1.3 * X[0], 1.));
       });
-      Run<2>     run(bench);
+      Rezoning<2> run(bench);
       run.add("spline", {{"On", "bottom"}, {"Knots", "uniform"}});
       const auto x = run(bench.initial, bench.initial, lagrangian);
       EXPECT_EQ(run.report.fraction, 1.);
@@ -378,7 +380,7 @@ TEST(Rules, SplineOnACircle)
             const double b = a + (2. - X.norm()) * 0.2 * std::sin(a);
             return Point<2>(-X.norm() * std::cos(b), X.norm() * std::sin(b));
           });
-          Run<2>         run(bench);
+          Rezoning<2>    run(bench);
           run.add("spline", {{"On", "inner"}});
           const auto   x     = run(bench.initial, bench.initial, lagrangian);
           const double error = bench.distance(
@@ -449,7 +451,7 @@ transfinite(const unsigned int degree)
     };
   };
   // A graded block of bilinear shape, whatever the material did inside
-  Run<dim> run(bench);
+  Rezoning<dim> run(bench);
   run.add("transfinite", {{"On", "all"}});
   const Map<dim> target = [](const Point<dim> &X) {
     return multilinear(grade(X));
@@ -475,8 +477,8 @@ transfinite(const unsigned int degree)
     y[dim - 1] = y[dim - 1] + (dim == 3 ? x[2] + 0.1 * x[0] : 0.);
     return y;
   };
-  const auto odd_start = bench.map(odd);
-  Run<dim>   run_odd(bench);
+  const auto    odd_start = bench.map(odd);
+  Rezoning<dim> run_odd(bench);
   run_odd.add("transfinite", {{"On", "left block, right block"}});
   EXPECT_LT(bench.distance(run_odd(odd_start, odd_start, odd_start), odd),
             1e-14);
@@ -514,7 +516,7 @@ TEST(Rules, TransfiniteRefusesWhatIsNoBlock)
   const Bench<2> bench(std::move(corner), 1), bench_ring(std::move(ring), 1);
   for (const auto *b : {&bench, &bench_ring})
     {
-      Run<2> run(*b);
+      Rezoning<2> run(*b);
       run.add("transfinite", {{"On", "all"}});
       EXPECT_THROW(run(b->initial, b->initial, b->initial), InputError);
     }
@@ -539,7 +541,7 @@ giuliani_regular(const unsigned int degree)
           }
         return x;
       };
-      Run<dim> run(bench);
+      Rezoning<dim> run(bench);
       run.add("Giuliani",
               {{"On", "all"},
                {"Tolerance", "1e-13"},
@@ -577,10 +579,10 @@ TEST(Rules, GiulianiMinimisesShearAndSqueeze)
   const Map<2>   f = [](const Point<2> &X) {
     return Point<2>(X[0] + 0.2 * X[1] * X[1], X[1] - 0.3 * X[0] * (1. - X[0]));
   };
-  const auto lagrangian = bench.map([&](const Point<2> &X) {
+  const auto  lagrangian = bench.map([&](const Point<2> &X) {
     return is_inside(X) ? Point<2>(0.5, 0.55) : f(X);
   });
-  Run<2>     run(bench);
+  Rezoning<2> run(bench);
   run.add("Giuliani",
           {{"On", "all"}, {"Tolerance", "1e-12"}, {"Relaxation", "1"}});
   const auto x = run(bench.initial, bench.initial, lagrangian);
@@ -630,7 +632,7 @@ giuliani_respects(const unsigned int degree)
   const Bench<dim> bench(std::move(mesh), degree);
   const auto       f          = perturbed<dim>(0.06 / degree, 8);
   const auto       lagrangian = bench.map(f);
-  Run<dim>         run(bench);
+  Rezoning<dim>    run(bench);
   run.add("Giuliani", {{"On", "left block, right block"}});
   run.add("fixed", {{"On", "Q"}});
   const auto x = run(bench.initial, bench.initial, lagrangian);
@@ -663,7 +665,7 @@ TEST(Rules, GiulianiRespectsInterfacesAndOtherRules)
 TEST(Rules, GiulianiCountsWhenItDoesNotConverge)
 {
   const Bench<2> bench(unit_mesh<2>(8), 1);
-  Run<2>         run(bench);
+  Rezoning<2>    run(bench);
   run.add("Giuliani",
           {{"On", "all"},
            {"Tolerance", "1e-10"},
@@ -692,7 +694,7 @@ TEST(Rezoner, NeverReturnsAnInvertedMesh)
             before.smallest_point_jacobian <= 0.)
           continue;
         ++n_valid;
-        Run<2> run(bench);
+        Rezoning<2> run(bench);
         run.add("Giuliani", {{"On", "all"}});
         const auto x     = run(bench.initial, bench.initial, lagrangian);
         const auto after = mesh_quality(bench.configuration, x);
@@ -796,7 +798,7 @@ TEST(Rezoner, CutsBackWhatWouldInvert)
 TEST(Rezoner, PrecedenceAndContradictions)
 {
   const Bench<2> bench(unit_mesh<2>(4), 1);
-  const auto     message = [&](Run<2> &run) -> std::string {
+  const auto     message = [&](Rezoning<2> &run) -> std::string {
     try
       {
         run(bench.initial, bench.initial, bench.initial);
@@ -812,7 +814,7 @@ TEST(Rezoner, PrecedenceAndContradictions)
   };
   {
     // Two rules of one stage
-    Run<2> run(bench);
+    Rezoning<2> run(bench);
     run.add("straight", {{"On", "left"}}).add("spline", {{"On", "left"}});
     const std::string text = message(run);
     EXPECT_TRUE(contains(text, "Rezoning/straight1")) << text;
@@ -820,13 +822,13 @@ TEST(Rezoner, PrecedenceAndContradictions)
   }
   {
     // One rule that names a curve twice
-    Run<2> run(bench);
+    Rezoning<2> run(bench);
     run.add("straight", {{"On", "left, left"}});
     EXPECT_TRUE(contains(message(run), "its own sets"));
   }
   {
     // Different components of a node are no contradiction; nor are stages.
-    Run<2> run(bench);
+    Rezoning<2> run(bench);
     run.add("follow", {{"On", "X"}, {"Leader", "O"}, {"Components", "x"}})
       .add("fixed", {{"On", "X"}, {"Components", "y"}})
       .add("fixed", {{"On", "bottom"}})
@@ -838,7 +840,7 @@ TEST(Rezoner, PrecedenceAndContradictions)
   }
   {
     // Nodes of earlier stages are announced to later ones on every process.
-    Run<2> run(bench);
+    Rezoning<2> run(bench);
     run.add("fixed", {{"On", "bottom"}}).add("fixed", {{"On", "O, M"}});
     auto        push  = std::make_unique<PushRule<2>>(Point<2>());
     const auto &taken = push->taken;
@@ -858,7 +860,7 @@ TEST(Rezoner, PrecedenceAndContradictions)
          {"transfinite", {{"On", "bottom"}}},
          {"Giuliani", {{"On", "bottom"}}}})
     {
-      Run<2> run(bench);
+      Rezoning<2> run(bench);
       run.add(wrong.first, wrong.second);
       EXPECT_TRUE(contains(message(run), "Rezoning/" + wrong.first + "1"))
         << wrong.first << ": " << message(run);
@@ -874,7 +876,7 @@ TEST(Rezoner, RefusesHangingNodes)
       cell->set_refine_flag();
   mesh.triangulation->execute_coarsening_and_refinement();
   const Bench<2> bench(std::move(mesh), 1);
-  Run<2>         run(bench);
+  Rezoning<2>    run(bench);
   run.add("Giuliani", {{"On", "all"}});
   EXPECT_THROW(run(bench.initial, bench.initial, bench.initial), InputError);
 }
