@@ -22,6 +22,9 @@ namespace alveolus
     constexpr double beyond_boundary = 0.5, beyond_wedge = 0.1;
 
     constexpr unsigned int most_parts = 64;
+
+    /** Candidate::node of a cell that does not have the node. */
+    constexpr unsigned int elsewhere = numbers::invalid_unsigned_int;
   } // namespace
 
   template <int dim>
@@ -34,22 +37,32 @@ namespace alveolus
       configuration.mesh_displacement().locally_owned_size();
     boundary_face.resize(triangulation.n_active_cells());
 
-    std::vector<std::pair<types::global_cell_index, unsigned int>> order;
+    using Cell = typename Triangulation<dim>::active_cell_iterator;
+    std::vector<Cell> order;
     for (const auto &cell : triangulation.active_cell_iterators())
       if (!cell->is_artificial())
         {
-          order.emplace_back(cell->global_active_cell_index(),
-                             cell->active_cell_index());
+          order.push_back(cell);
           for (const unsigned int f : cell->face_indices())
             boundary_face[cell->active_cell_index()][f] =
               cell->face(f)->at_boundary();
         }
-    std::sort(order.begin(), order.end());
+    std::sort(order.begin(), order.end(), [](const Cell &a, const Cell &b) {
+      return a->global_active_cell_index() < b->global_active_cell_index();
+    });
+    std::vector<std::vector<unsigned int>> around(triangulation.n_vertices());
+    for (const Cell &cell : order)
+      for (const unsigned int v : cell->vertex_indices())
+        around[cell->vertex_index(v)].push_back(cell->active_cell_index());
 
+    // First the cells that have the node, by global order, then (nodes inside
+    // edges, faces and cells) the others around the vertices of that edge, face
+    // or cell: all of them are owned or ghost cells.
     std::map<unsigned int, Node> by_entry;
-    for (const auto &[global, c] : order)
+    for (const Cell &cell : order)
       for (unsigned int i = 0; i < cells.n_nodes; ++i)
         {
+          const unsigned int c     = cell->active_cell_index();
           const unsigned int entry = cells.local_entries(c, i)[0];
           if (entry >= n_owned)
             continue;
@@ -59,6 +72,31 @@ namespace alveolus
             if (boundary_face[c][f] &&
                 std::abs(cells.unit_position(i)[f / 2] - f % 2) < 1e-10)
               node.at_boundary = true;
+        }
+    for (const Cell &cell : order)
+      for (unsigned int i = 0; i < cells.n_nodes; ++i)
+        {
+          const unsigned int c    = cell->active_cell_index();
+          const auto         node = by_entry.find(cells.local_entries(c, i)[0]);
+          if (node == by_entry.end() || node->second.candidates[0].cell != c)
+            continue;
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const Point<dim> corner = GeometryInfo<dim>::unit_cell_vertex(v);
+              bool             near   = true;
+              for (unsigned int d = 0; d < dim; ++d)
+                near = near && std::abs(cells.unit_position(i)[d] - corner[d]) <
+                                 1. - 1e-10;
+              if (near)
+                for (const unsigned int other : around[cell->vertex_index(v)])
+                  {
+                    bool known = false;
+                    for (const auto &candidate : node->second.candidates)
+                      known = known || candidate.cell == other;
+                    if (!known)
+                      node->second.candidates.push_back({other, elsewhere});
+                  }
+            }
         }
     for (auto &[entry, node] : by_entry)
       nodes.push_back(std::move(node));
@@ -99,7 +137,11 @@ namespace alveolus
         for (const Candidate &candidate : node.candidates)
           {
             cells.gather(x_old, candidate.cell, position);
-            Point<dim> xi = cells.unit_position(candidate.node);
+            Point<dim> xi;
+            for (unsigned int d = 0; d < dim; ++d)
+              xi[d] = candidate.node == elsewhere
+                        ? 0.5
+                        : cells.unit_position(candidate.node)[d];
             if (!cells.invert(position, x, xi))
               continue;
             double outside = 0.;

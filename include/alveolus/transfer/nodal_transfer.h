@@ -51,10 +51,10 @@ namespace alveolus
     struct Candidate
     {
       unsigned int cell;
-      unsigned int node; ///< the node's number in the cell
+      unsigned int node; ///< the node's number in the cell, if it has it
     };
 
-    /** An owned node with its candidates, by global order of the cells. */
+    /** An owned node with its candidates, the same for any partition. */
     struct Node
     {
       std::vector<Candidate> candidates;
