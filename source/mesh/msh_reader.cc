@@ -139,7 +139,11 @@ namespace alveolus
       int
       take_id(const char *what)
       {
-        return take<int>(what);
+        const int value = take<int>(what);
+        // Signs are dropped here and there: keep to numbers where that works.
+        if (value == std::numeric_limits<int>::min())
+          fail(std::string(what) + " is too large", "");
+        return value;
       }
 
       double
@@ -506,8 +510,15 @@ namespace alveolus
             const unsigned int dimension = lines.take_count("a dimension");
             const int          entity    = lines.take_id("an entity number");
             const int          type      = lines.take_id("an element type");
-            const std::size_t  n = lines.take_count("a number of elements");
-            const auto         groups = entity_groups.find({dimension, entity});
+            const std::size_t  n     = lines.take_count("a number of elements");
+            const auto         known = element_types().find(type);
+            if (known != element_types().end() &&
+                known->second.dimension != dimension)
+              lines.fail(std::string(known->second.names) +
+                           " on an entity of dimension " +
+                           std::to_string(dimension),
+                         "");
+            const auto groups = entity_groups.find({dimension, entity});
             if (groups == entity_groups.end() && entities_are_listed)
               lines.fail("elements of entity " + std::to_string(entity) +
                            " of dimension " + std::to_string(dimension) +

@@ -4,7 +4,9 @@
 // follow from the geometry that was asked for.
 #include <alveolus/base/errors.h>
 #include <alveolus/base/process.h>
+#include <alveolus/mesh/mesh_checks.h>
 #include <alveolus/mesh/mesh_source.h>
+#include <alveolus/mesh/msh_reader.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -13,6 +15,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 
 using namespace dealii;
@@ -471,27 +474,76 @@ TEST(FileSource, WrongFormats)
 
 
 
-TEST(FileSource, TruncatedAtEveryLine)
+namespace
+{
+  /** what() of the InputError by which @p text is refused, else "". */
+  std::string
+  refusal(const std::string &text)
+  {
+    try
+      {
+        MeshDescription<2> mesh = read_msh<2>(text, "text");
+        check_description(mesh);
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+} // namespace
+
+
+
+TEST(MshReader, TruncatedEverywhere)
 {
   for (const std::string &text : {version_2, version_4})
+    for (std::size_t end = 0; end + 2 < text.size(); ++end)
+      {
+        const std::string found = refusal(text.substr(0, end));
+        EXPECT_EQ(found.substr(0, 4), "text") << "at " << end << ": " << found;
+        if (end > 0 && text[end - 1] == '\n')
+          {
+            EXPECT_NE(found.find("truncated"), std::string::npos) << found;
+          }
+      }
+}
+
+
+
+// Damaged files are refused by InputError or still make a valid mesh; any other
+// exception, crash or hang fails the test.
+TEST(MshReader, Mutations)
+{
+  std::mt19937      random(1);
+  const std::string letters   = "0123456789 -.e$\n\t\"xN";
+  unsigned int      n_refused = 0;
+  for (unsigned int i = 0; i < 4000; ++i)
     {
-      unsigned int n = 0;
-      for (std::size_t end = text.find('\n');
-           end != std::string::npos && end + 1 < text.size();
-           end = text.find('\n', end + 1), ++n)
+      std::string text = i % 2 == 0 ? version_2 : version_4;
+      for (unsigned int n = 1 + random() % 3; n > 0; --n)
         {
-          const std::string found = message_of_text<2>(text.substr(0, end + 1));
-          EXPECT_NE(found.find("wrong.msh"), std::string::npos) << found;
-          EXPECT_NE(found.find("truncated"), std::string::npos) << found;
+          const std::size_t at = random() % text.size();
+          switch (random() % 4)
+            {
+              case 0:
+                text[at] = letters[random() % letters.size()];
+                break;
+              case 1:
+                text.insert(at, 1, letters[random() % letters.size()]);
+                break;
+              case 2:
+                text.erase(at, 1 + random() % 12);
+                break;
+              default:
+                text.insert(at, text.substr(random() % text.size(), 20));
+            }
         }
-      EXPECT_GT(n, 30u);
-      // Within a line the damage is seen in another way.
-      for (std::size_t end = 1; end + 2 < text.size(); end += 7)
-        {
-          const std::string found = message_of_text<2>(text.substr(0, end));
-          EXPECT_NE(found.find("wrong.msh"), std::string::npos) << found;
-        }
+      const std::string found = refusal(text);
+      n_refused += !found.empty();
+      EXPECT_EQ(found.substr(0, 4), found.empty() ? "" : "text") << found;
     }
+  EXPECT_GT(n_refused, 2000u);
 }
 
 
@@ -537,6 +589,8 @@ TEST(FileSource, InconsistentSections)
                {"8 nodes are announced, 7 are given"});
   expect_words(in_4("6 6 1 6", "6 7 1 6"),
                {"7 elements are announced, 6 are given"});
+  expect_words(in_4("1 1 1 1\n2 1 2", "2 1 1 1\n2 1 2"),
+               {"line 46", "lines on an entity of dimension 2"});
   expect_words(in_4("2 2 3 1", "2 9 3 1"), {"entity 9", "$Entities"});
   expect_words(message_of_text<2>(version_2 + "$Nodes\n0\n$EndNodes\n"),
                {"a second section $Nodes"});
