@@ -25,23 +25,35 @@ namespace alveolus
     d                 = make_vector();
     positions_of_mesh = make_vector();
 
-    // Support points of the initial mesh; with curved manifolds and degree 2
-    // these are the points that MappingQ places on the manifold.
-    const MappingQ<dim>   mapping(degree);
+    // X_mesh is what MappingQEulerian starts from: cells with straight edges
+    // between the vertices. With curved manifolds and degree 2 the nodes begin
+    // where MappingQ places them on the manifold, so d starts with the
+    // difference.
     const Quadrature<dim> nodes(fe.get_unit_support_points());
-    FEValues<dim> fe_values(mapping, fe, nodes, update_quadrature_points);
-    std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
-    positions_of_mesh.zero_out_ghost_values();
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          fe_values.reinit(cell);
-          cell->get_dof_indices(dofs);
-          for (unsigned int i = 0; i < dofs.size(); ++i)
-            if (locally_owned.is_element(dofs[i]))
-              positions_of_mesh[dofs[i]] = fe_values.quadrature_point(
-                i)[fe.system_to_component_index(i).first];
-        }
+    const auto            place_nodes = [&](const unsigned int mapping_degree,
+                                 NodalVector       &result) {
+      const MappingQ<dim> mapping(mapping_degree);
+      FEValues<dim> fe_values(mapping, fe, nodes, update_quadrature_points);
+      std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+      result.zero_out_ghost_values();
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            fe_values.reinit(cell);
+            cell->get_dof_indices(dofs);
+            for (unsigned int i = 0; i < dofs.size(); ++i)
+              if (locally_owned.is_element(dofs[i]))
+                result[dofs[i]] = fe_values.quadrature_point(
+                  i)[fe.system_to_component_index(i).first];
+          }
+    };
+    place_nodes(1, positions_of_mesh);
+    if (degree > 1)
+      {
+        place_nodes(degree, d);
+        d -= positions_of_mesh;
+        d.update_ghost_values();
+      }
     positions_of_mesh.update_ghost_values();
 
     eulerian_mapping =

@@ -99,6 +99,13 @@ namespace alveolus
                       on,
                       "Regions whose inner nodes are smoothed.",
                       Patterns::List(Patterns::Anything()));
+    prm.add_parameter("Shapes",
+                      shapes,
+                      "initial: triangles keep the shapes and relative areas "
+                      "they had at the start (or at the last remesh), so that a "
+                      "graded mesh stays graded; equal: upright triangles of "
+                      "equal areas, as published.",
+                      Patterns::Selection("initial|equal"));
     prm.add_parameter("Tolerance",
                       tolerance,
                       "Distance from its target at which a node may stop, "
@@ -195,6 +202,7 @@ namespace alveolus
                         }
                       if (odd)
                         std::swap(corner.neighbours[0], corner.neighbours[1]);
+                      corner.foot.fill(1. / dim);
                       corners_of[node].push_back(corner);
                       continue;
                     }
@@ -214,9 +222,11 @@ namespace alveolus
     vertices.clear();
     corners.clear();
     first_corner.assign(1, 0);
-    for (const auto &entry : corners_of)
+    for (auto &entry : corners_of)
       {
         vertices.push_back(local(entry.first));
+        if (shapes == "initial")
+          keep_shapes(positions, vertices.back(), entry.second);
         corners.insert(corners.end(), entry.second.begin(), entry.second.end());
         first_corner.push_back(corners.size());
       }
@@ -237,13 +247,54 @@ namespace alveolus
   }
 
   template <int dim>
+  void
+  GiulianiRule<dim>::keep_shapes(const NodalVector   &positions,
+                                 const LocalNode     &vertex,
+                                 std::vector<Corner> &around) const
+  {
+    const Point<dim> here = get<dim>(positions, vertex);
+    double           mean = 0.;
+    for (Corner &corner : around)
+      {
+        std::array<Point<dim>, dim> x;
+        Tensor<2, dim>              edges;
+        for (unsigned int a = 0; a < dim; ++a)
+          {
+            x[a]     = get<dim>(positions, corner.neighbours[a]);
+            edges[a] = x[a] - here;
+          }
+        corner.share = determinant(edges);
+        mean += corner.share / around.size();
+
+        // The foot of the height is affine in the base: foot = x_0 + sum_a
+        // lambda_a (x_a - x_0), by the least squares of (here - foot).
+        Tensor<2, dim> A; // base directions and the normal as columns
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            for (unsigned int a = 1; a < dim; ++a)
+              A[d][a - 1] = x[a][d] - x[0][d];
+            A[d][dim - 1] = inward_normal(x)[d];
+          }
+        const Tensor<1, dim> lambda = invert(A) * (here - x[0]);
+        corner.foot[0]              = 1.;
+        for (unsigned int a = 1; a < dim; ++a)
+          {
+            corner.foot[a] = lambda[a - 1];
+            corner.foot[0] -= lambda[a - 1];
+          }
+      }
+    for (Corner &corner : around)
+      corner.share /= mean;
+  }
+
+  template <int dim>
   std::pair<Point<dim>, double>
   GiulianiRule<dim>::target(const NodalVector &positions,
                             const unsigned int v) const
   {
     const Point<dim> here = get<dim>(positions, vertices[v]);
     double           mean = 0.; // of 2 x area, 6 x volume
-    Tensor<1, dim>   middles, heights;
+    Tensor<1, dim>   feet, heights;
     for (unsigned int i = first_corner[v]; i < first_corner[v + 1]; ++i)
       {
         std::array<Point<dim>, dim> x;
@@ -252,15 +303,15 @@ namespace alveolus
           {
             x[a]     = get<dim>(positions, corners[i].neighbours[a]);
             edges[a] = x[a] - here;
-            middles += x[a];
+            feet += corners[i].foot[a] * x[a];
           }
         mean += determinant(edges);
         const Tensor<1, dim> normal = inward_normal(x);
-        heights += normal / normal.norm_square();
+        heights += corners[i].share * normal / normal.norm_square();
       }
     const double n = first_corner[v + 1] - first_corner[v];
     mean /= n;
-    return {Point<dim>(middles / (n * dim) + heights * (mean / n)),
+    return {Point<dim>((feet + heights * mean) / n),
             dim == 2 ? std::sqrt(std::abs(mean)) : std::cbrt(std::abs(mean))};
   }
 
@@ -327,7 +378,9 @@ ALVEOLUS_REGISTER_DIM(
   "middle m of AB, at the height H = 2 S/|AB| that gives the triangle the mean "
   "area S of those around P. With the unit normal n of AB: x_P = mean of (m + "
   "H n) over the elements, the least squares of shear offset and height error. "
-  "In 3D tetrahedra with the base ABC, H = 3 V/|ABC|. Jacobi sweeps x <- x + "
+  "In 3D tetrahedra with the base ABC, H = 3 V/|ABC|. With `Shapes` = initial, "
+  "the foot of the height keeps its relative place on AB instead of the middle "
+  "and S is shared out as at the start. Jacobi sweeps x <- x + "
   "`Relaxation` (x_P - x), until no node is further from x_P than `Tolerance` "
   "times the local size. Nodes at the boundary of a region, at that of the "
   "domain, and nodes of points, lines and surfaces with rules stay where they "

@@ -28,7 +28,11 @@ namespace alveolus
     NodalVector
     make_vector() const;
 
-    /** Positions X_mesh of all relevant nodes, as a nodal vector [mm]. */
+    /**
+     * Positions X_mesh of all relevant nodes, as a nodal vector [mm]: those of
+     * cells with straight edges. On curved manifolds with degree 2, d takes the
+     * nodes to the manifold from the start.
+     */
     const NodalVector &
     initial_positions() const
     {

@@ -19,6 +19,10 @@ namespace alveolus
    * boundary id too where it is at the boundary (in 3D boundary faces carry the
    * tag of their elementary surface as boundary id); both are inherited under
    * refinement. A name stands for one or several tags.
+   *
+   * In 2D a curve that lies at the boundary may have no tag of its own where
+   * the manifold id is needed for a curved manifold: whether a line is on a
+   * curve is therefore a question to is_on_curve(), never to the ids alone.
    */
   template <int dim>
   struct NamedSets
@@ -43,6 +47,29 @@ namespace alveolus
     boundary(const std::string &name, const std::string &where) const;
     const std::set<dealii::types::material_id> &
     region(const std::string &name, const std::string &where) const;
+
+    /**
+     * Whether @p line (an iterator to a line, in 2D a face, of the
+     * triangulation or of a DoFHandler on it) is part of the curve @p name: its
+     * manifold id is one of the curve's or, in 2D, it is at the boundary with a
+     * boundary id of the boundary piece of that name.
+     * @throws InputError if there is no such curve
+     */
+    template <class LineIterator>
+    bool
+    is_on_curve(const LineIterator &line, const std::string &name) const
+    {
+      if (curve(name, "curve").count(line->manifold_id()) != 0)
+        return true;
+      if constexpr (dim == 2)
+        {
+          const auto piece = boundaries.find(name);
+          return piece != boundaries.end() && line->at_boundary() &&
+                 piece->second.count(line->boundary_id()) != 0;
+        }
+      else
+        return false;
+    }
   };
 
   /** A triangulation with its names. Its vertices never move. */

@@ -23,6 +23,12 @@ namespace alveolus
    * 3D the base is the triangle of the three neighbours along edges, m its
    * centroid, and H = 3 V/|ABC| with the mean volume V of the tetrahedra.
    *
+   * This pulls graded meshes towards uniform ones and inverts cells at
+   * irregular vertices, so by default the triangles keep the shapes they had
+   * when the rule was attached [ours]: the foot of the height stays at its
+   * relative place on the base, and the areas in their ratios around P; the
+   * mesh of that moment is a fixed point.
+   *
    * Jacobi iteration x <- x + w (x_P - x) with the factor w until no node is
    * further from its x_P than the tolerance times its local size (side of the
    * square, or cube, of twice the mean area, or six times the mean volume), so
@@ -69,6 +75,9 @@ namespace alveolus
     struct Corner
     {
       std::array<LocalNode, dim> neighbours; ///< right-handed seen from P
+      /** Foot of the height as weights of the neighbours: 1/dim is the middle. */
+      std::array<double, dim> foot;
+      double                  share = 1.; ///< area over the mean around P
     };
 
     /** A node placed between others with given weights. */
@@ -78,11 +87,18 @@ namespace alveolus
       std::vector<std::pair<double, LocalNode>> parents;
     };
 
+    /** Take foot and share of the corners @p around a vertex from the mesh. */
+    void
+    keep_shapes(const NodalVector   &positions,
+                const LocalNode     &vertex,
+                std::vector<Corner> &around) const;
+
     /** New place of vertex @p v by its corners, and the local size. */
     std::pair<dealii::Point<dim>, double>
     target(const NodalVector &positions, const unsigned int v) const;
 
     std::vector<std::string> on;
+    std::string              shapes         = "initial";
     double                   tolerance      = 1e-4;
     double                   relaxation     = 0.7;
     unsigned int             largest_sweeps = 500;

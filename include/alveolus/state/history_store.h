@@ -3,6 +3,7 @@
 #define alveolus_state_history_store_h
 
 #include <alveolus/base/history_field.h>
+#include <alveolus/state/ghost_exchange.h>
 
 #include <deal.II/distributed/tria.h>
 
@@ -92,6 +93,23 @@ namespace alveolus
     void
     update_ghosts();
 
+    /**
+     * Where the first record of each active cell begins in the arrays;
+     * n_active_cells() + 1 entries.
+     */
+    const std::vector<std::size_t> &
+    offsets() const
+    {
+      return begin;
+    }
+
+    /** The pattern behind update_ghosts(), for other per-cell data. */
+    const GhostExchange<dim> &
+    ghost_exchange() const
+    {
+      return exchange;
+    }
+
     /** Bytes in both arrays on this process. */
     std::size_t
     memory_consumption() const;
@@ -106,7 +124,8 @@ namespace alveolus
   private:
     std::vector<HistoryLayout> layouts;
     std::vector<unsigned int>  cell_region;
-    std::vector<std::size_t>   begin;
+    std::vector<std::size_t>   begin; ///< one more than active cells
+    GhostExchange<dim>         exchange;
   };
 } // namespace alveolus
 

@@ -15,7 +15,8 @@ namespace alveolus
   struct TransferReport
   {
     unsigned int n_subcycles = 0;
-    unsigned int n_limited   = 0; ///< values brought back into field bounds
+    /** Values brought back into field bounds from beyond round-off. */
+    unsigned int n_limited = 0;
     /** Largest |V_new - V_old - sum of swept volumes| / V (asserted). */
     double geometric_conservation_error = 0.;
     /**
@@ -73,6 +74,34 @@ namespace alveolus
     }
 
   private:
+    /** Arrays kept between transfers, to spare their allocation. */
+    struct Work
+    {
+      std::vector<double> before, volume_before, volume_after, swept,
+        correction, boundary;
+    };
+
+    /** Largest part of a sub-cell's volume given away (collective). */
+    double
+    donor_fraction() const;
+
+    /** One sub-cycle between the volumes and with the swept volumes in work. */
+    void
+    sub_cycle(HistoryStore<dim> &store,
+              const NodalVector &x_before,
+              const NodalVector &x_after,
+              TransferReport    &report);
+
+    /** Contents of the chosen field by cell, summed up (collective). */
+    double
+    content(const HistoryStore<dim>   &store,
+            const std::vector<double> &volume) const;
+
+    /** Bring scalars back into their bounds; returns the number counted. */
+    unsigned int
+    enforce_bounds(HistoryStore<dim> &store) const;
+
+    Work                                 work;
     const Configuration<dim>            &configuration;
     SubCells<dim>                        cells;
     std::unique_ptr<TransferScheme<dim>> scheme;

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_mesh_gmsh_h
+#define alveolus_mesh_gmsh_h
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+
+namespace alveolus
+{
+  /** How the mesher is run; parameters shared by all that need it. */
+  struct GmshSettings
+  {
+    std::string program    = "gmsh";
+    double      time_limit = 120.; ///< [s]
+
+    /** Add the parameters to the current subsection. */
+    void
+    declare_parameters(dealii::ParameterHandler &prm);
+  };
+
+  /**
+   * Let gmsh make a @p dim dimensional mesh of the geometry script
+   * @p geometry (collective; process 0 runs it, out of process and without a
+   * shell, so that its crash is an error message). The script must come from
+   * this program, never from a user: gmsh's language can start programs.
+   * Script and mesh are written as @p name.geo and @p name.msh into
+   * @p output_directory. Options of the user's own gmsh are not read, and one
+   * thread is used, so that the same input gives the same mesh.
+   * @param where subsection of the parameters, for messages
+   * @return the mesh file's text (format 4.1), on every process
+   * @throws InputError if gmsh cannot be started, RunError if it crashes,
+   * hangs, reports an error or writes no mesh
+   */
+  std::string
+  run_gmsh(const std::string  &geometry,
+           const unsigned int  dim,
+           const std::string  &name,
+           const std::string  &output_directory,
+           const GmshSettings &settings,
+           const std::string  &where,
+           const MPI_Comm     &communicator);
+} // namespace alveolus
+
+#endif

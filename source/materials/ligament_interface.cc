@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/materials/ligament_interface.h>
+
+#include <deal.II/base/symmetric_tensor.h>
+
+namespace alveolus
+{
+  using dealii::Tensor;
+
+  void
+  LigamentInterface::declare_parameters(dealii::ParameterHandler &prm)
+  {
+    using dealii::Patterns::Double;
+    using dealii::Patterns::Selection;
+    prm.add_parameter("Thickness",
+                      thickness,
+                      "Thickness h of the layer [mm].",
+                      Double(0.));
+    prm.add_parameter("Poisson's ratio",
+                      poisson,
+                      "Poisson's ratio nu [-], which turns the modulus into a "
+                      "shear modulus.",
+                      Double(-1., 0.5));
+    prm.add_parameter("Tangent modulus",
+                      list,
+                      "Points 'strain: tangent modulus [MPa]' of the uniaxial "
+                      "law by increasing engineering strain, separated by "
+                      "commas; a strain listed twice is a jump.",
+                      dealii::Patterns::Anything());
+    prm.add_parameter("Table file",
+                      file,
+                      "File with the same points in two columns, used if no "
+                      "points are listed.",
+                      dealii::Patterns::Anything());
+    prm.add_parameter("Tension branch",
+                      tension_branch,
+                      "as printed: all points of the table; continued: a jump "
+                      "at the largest strain (rupture) is left out, and the "
+                      "modulus before it goes on.",
+                      Selection("continued|as printed"));
+    prm.add_parameter("Tangential stiffness",
+                      tangential,
+                      "table: shear modulus from the tension branch of the "
+                      "table at the engineering shear; initial: from the "
+                      "modulus at strain zero.",
+                      Selection("table|initial"));
+  }
+
+
+
+  void
+  LigamentInterface::initialize(const std::string &where)
+  {
+    if (!(thickness > 0.))
+      throw InputError(where + "/Thickness",
+                       "found " + std::to_string(thickness),
+                       "it must be positive [mm]");
+    if (!(poisson > -1.))
+      throw InputError(where + "/Poisson's ratio",
+                       "found " + std::to_string(poisson),
+                       "it must be larger than -1");
+    if (!list.empty() && !file.empty())
+      throw InputError(where + "/Table file",
+                       "both a list of tangent moduli and a file are given",
+                       "leave one of them empty");
+    const std::string name =
+      where + (file.empty() ? "/Tangent modulus" : "/Table file");
+    auto       points = file.empty() ? TangentTable::parse(list, name)
+                                     : TangentTable::read(file, name);
+    const auto n      = points.size();
+    if (tension_branch == "continued" && n > 1 && points[n - 1].first > 0. &&
+        points[n - 1].first == points[n - 2].first)
+      points.pop_back();
+    law       = TangentTable(points, name);
+    shear_law = (tangential == "table")
+                  ? law
+                  : TangentTable({{0., law.modulus(0.)}}, name);
+  }
+
+
+
+  double
+  LigamentInterface::normal_strain(const Tensor<1, 3> &jump,
+                                   const Tensor<1, 3> &normal) const
+  {
+    return jump * normal / thickness;
+  }
+
+
+
+  double
+  LigamentInterface::shear_strain(const Tensor<1, 3> &jump,
+                                  const Tensor<1, 3> &normal) const
+  {
+    return (jump - (jump * normal) * normal).norm() / thickness;
+  }
+
+
+
+  void
+  LigamentInterface::evaluate(const Tensor<1, 3> &jump,
+                              const Tensor<1, 3> &normal,
+                              Tensor<1, 3>       &traction,
+                              Tensor<2, 3>       &tangent,
+                              double             &energy) const
+  {
+    const double       opening          = jump * normal;
+    const Tensor<1, 3> slip             = jump - opening * normal;
+    const double       length           = slip.norm();
+    const double       strain           = opening / thickness;
+    const double       shear            = length / thickness;
+    const double       to_shear_modulus = 0.5 / (1. + poisson);
+
+    const Tensor<2, 3> nn = outer_product(normal, normal);
+    const Tensor<2, 3> tangential_plane =
+      Tensor<2, 3>(dealii::unit_symmetric_tensor<3>()) - nn;
+
+    // Without slip there is no direction, and tangent and secant are the same.
+    const double slope = to_shear_modulus * shear_law.modulus(shear);
+    const double secant =
+      shear > 0. ? to_shear_modulus * shear_law.stress(shear) / shear : slope;
+
+    traction = law.stress(strain) * normal + secant / thickness * slip;
+    tangent  = law.modulus(strain) / thickness * nn +
+              secant / thickness * tangential_plane;
+    if (length > 0.)
+      {
+        const Tensor<1, 3> direction = slip / length;
+        tangent +=
+          (slope - secant) / thickness * outer_product(direction, direction);
+      }
+    energy = thickness *
+             (law.energy(strain) + to_shear_modulus * shear_law.energy(shear));
+  }
+} // namespace alveolus
+
+ALVEOLUS_REGISTER(
+  alveolus::InterfaceLaw,
+  alveolus::LigamentInterface,
+  "ligament",
+  "Periodontal ligament as a layer without volume, of `Thickness` h. Normal "
+  "traction s(u_n/h) with ds/de the table `Tangent modulus` (or `Table file`) "
+  "over the engineering strain e; tangential traction with the slope "
+  "E_t(|u_t|/h)/(2(1+nu)), E_t the tension branch of the table (`Tangential "
+  "stiffness` = table) or its value at zero (initial), nu = `Poisson's "
+  "ratio`. `Tension branch` chooses whether the rupture at the end of the "
+  "table takes part.")
