@@ -248,6 +248,22 @@ namespace alveolus
   void
   ParameterText::apply(ParameterHandler &prm) const
   {
+    // A variant may shorten the Names, or change the Type of the mesh, of the
+    // file it includes: what then has no place any more is no mistake.
+    const auto is_left_out = [this](const std::string &section,
+                                    const std::string &member) {
+      for (const auto &entry : entries)
+        if (path_of(entry) == section + "/Names")
+          {
+            const auto list = Utilities::split_string_list(entry.value, ',');
+            if (std::find(list.begin(), list.end(), member) != list.end())
+              return true;
+          }
+        else if (path_of(entry) == section + "/Type" && entry.value == member)
+          return true;
+      return false;
+    };
+
     std::vector<std::string> problems;
     for (const auto &entry : entries)
       {
@@ -259,6 +275,9 @@ namespace alveolus
             if (!prm.subsection_path_exists(path))
               {
                 path.pop_back();
+                known = false;
+                if (path.size() == 1 && is_left_out(path[0], section))
+                  break;
                 const bool collection =
                   path.size() == 1 && !names(path[0]).empty();
                 problems.push_back(
@@ -268,7 +287,6 @@ namespace alveolus
                      ? "; add '" + section + "' to " + path[0] +
                          " / Names, or correct it"
                      : "; `--print-parameters` lists what there is"));
-                known = false;
                 break;
               }
           }

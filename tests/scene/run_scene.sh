@@ -177,7 +177,7 @@ fi
 
 tolerance=$(value tolerance 1e-8)
 if ((${#launcher[@]})); then
-  larger=$(awk -v t="$tolerance" 'BEGIN { print t > 1e-6 ? t : 1e-6 }')
+  larger=$(awk -v t="$tolerance" 'BEGIN { print (t > 1e-6 ? t : 1e-6) }')
   tolerance=$(value 'parallel tolerance' "$larger")
 fi
 absolute=$(awk -v t="$tolerance" 'BEGIN { print 1e-3 * t }')
