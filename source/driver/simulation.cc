@@ -392,6 +392,12 @@ namespace alveolus
                  Utilities::to_string(rezoning_report.fraction) +
                  " of its motion, it would have inverted elements");
       }
+    if (rezoning_report.unconverged_rules > 0)
+      {
+        ++totals.unconverged_rezonings;
+        log.note("rezoning did not converge in " +
+                 std::to_string(rezoning_report.sweeps) + " sweeps");
+      }
     if (rezoning_report.largest_motion == 0.)
       return;
 
@@ -573,6 +579,7 @@ namespace alveolus
     if (rezoner)
       {
         summary["rezonings cut back"] = totals.cut_back;
+        summary["rezonings not converged"] = totals.unconverged_rezonings;
         summary["transfer sub-cycles"] = totals.subcycles;
       }
     if (bone_mass)

@@ -99,13 +99,14 @@ namespace alveolus
                       on,
                       "Regions whose inner nodes are smoothed.",
                       Patterns::List(Patterns::Anything()));
-    prm.add_parameter("Shapes",
-                      shapes,
-                      "initial: triangles keep the shapes and relative areas "
-                      "they had at the start (or at the last remesh), so that a "
-                      "graded mesh stays graded; equal: upright triangles of "
-                      "equal areas, as published.",
-                      Patterns::Selection("initial|equal"));
+    prm.add_parameter(
+      "Shapes",
+      shapes,
+      "initial: triangles keep, as far as possible, the shapes "
+      "they had at the start (or at the last remesh), so that a "
+      "graded mesh stays graded; equal: upright triangles of "
+      "equal areas, as published, for nearly uniform meshes.",
+      Patterns::Selection("initial|equal"));
     prm.add_parameter("Tolerance",
                       tolerance,
                       "Distance from its target at which a node may stop, "
@@ -202,7 +203,6 @@ namespace alveolus
                         }
                       if (odd)
                         std::swap(corner.neighbours[0], corner.neighbours[1]);
-                      corner.foot.fill(1. / dim);
                       corners_of[node].push_back(corner);
                       continue;
                     }
@@ -219,13 +219,17 @@ namespace alveolus
         touched.insert(touched.end(), moved.begin(), moved.end());
       }
 
+    equalise = shapes == "equal";
     vertices.clear();
     corners.clear();
     first_corner.assign(1, 0);
     for (auto &entry : corners_of)
       {
         vertices.push_back(local(entry.first));
-        if (shapes == "initial")
+        // Published: the mean of the middles of the bases
+        for (Corner &corner : entry.second)
+          corner.weights.fill(1. / (dim * entry.second.size()));
+        if (!equalise)
           keep_shapes(positions, vertices.back(), entry.second);
         corners.insert(corners.end(), entry.second.begin(), entry.second.end());
         first_corner.push_back(corners.size());
@@ -253,38 +257,33 @@ namespace alveolus
                                  std::vector<Corner> &around) const
   {
     const Point<dim> here = get<dim>(positions, vertex);
-    double           mean = 0.;
+    double           sum  = 0.;
     for (Corner &corner : around)
       {
-        std::array<Point<dim>, dim> x;
-        Tensor<2, dim>              edges;
+        // Row of the P1 stiffness of the simplex of P and its neighbours:
+        // grad N_a are the rows of the inverse of the edges (as columns).
+        Tensor<2, dim> edges;
         for (unsigned int a = 0; a < dim; ++a)
           {
-            x[a]     = get<dim>(positions, corner.neighbours[a]);
-            edges[a] = x[a] - here;
+            const Tensor<1, dim> edge =
+              get<dim>(positions, corner.neighbours[a]) - here;
+            for (unsigned int d = 0; d < dim; ++d)
+              edges[d][a] = edge[d];
           }
-        corner.share = determinant(edges);
-        mean += corner.share / around.size();
-
-        // The foot of the height is affine in the base: foot = x_0 + sum_a
-        // lambda_a (x_a - x_0), by the least squares of (here - foot).
-        Tensor<2, dim> A; // base directions and the normal as columns
-        for (unsigned int d = 0; d < dim; ++d)
+        const Tensor<2, dim> gradients = invert(edges);
+        Tensor<1, dim>       gradient_P;
+        for (unsigned int a = 0; a < dim; ++a)
+          gradient_P -= gradients[a];
+        for (unsigned int a = 0; a < dim; ++a)
           {
-            for (unsigned int a = 1; a < dim; ++a)
-              A[d][a - 1] = x[a][d] - x[0][d];
-            A[d][dim - 1] = inward_normal(x)[d];
-          }
-        const Tensor<1, dim> lambda = invert(A) * (here - x[0]);
-        corner.foot[0]              = 1.;
-        for (unsigned int a = 1; a < dim; ++a)
-          {
-            corner.foot[a] = lambda[a - 1];
-            corner.foot[0] -= lambda[a - 1];
+            corner.weights[a] =
+              -(gradients[a] * gradient_P) * determinant(edges);
+            sum += corner.weights[a];
           }
       }
     for (Corner &corner : around)
-      corner.share /= mean;
+      for (double &weight : corner.weights)
+        weight /= sum;
   }
 
   template <int dim>
@@ -303,15 +302,18 @@ namespace alveolus
           {
             x[a]     = get<dim>(positions, corners[i].neighbours[a]);
             edges[a] = x[a] - here;
-            feet += corners[i].foot[a] * x[a];
+            feet += corners[i].weights[a] * x[a];
           }
         mean += determinant(edges);
-        const Tensor<1, dim> normal = inward_normal(x);
-        heights += corners[i].share * normal / normal.norm_square();
+        if (equalise)
+          {
+            const Tensor<1, dim> normal = inward_normal(x);
+            heights += normal / normal.norm_square();
+          }
       }
     const double n = first_corner[v + 1] - first_corner[v];
     mean /= n;
-    return {Point<dim>((feet + heights * mean) / n),
+    return {Point<dim>(feet + heights * (mean / n)),
             dim == 2 ? std::sqrt(std::abs(mean)) : std::cbrt(std::abs(mean))};
   }
 
@@ -379,8 +381,10 @@ ALVEOLUS_REGISTER_DIM(
   "area S of those around P. With the unit normal n of AB: x_P = mean of (m + "
   "H n) over the elements, the least squares of shear offset and height error. "
   "In 3D tetrahedra with the base ABC, H = 3 V/|ABC|. With `Shapes` = initial, "
-  "the foot of the height keeps its relative place on AB instead of the middle "
-  "and S is shared out as at the start. Jacobi sweeps x <- x + "
+  "P keeps instead its place among its neighbours in the sense of the "
+  "Laplacian on these triangles as they were at the start: x_P = sum w_j x_j "
+  "with the weights of the linear finite element stiffness, so that the mesh "
+  "of the start and all its affine images are kept. Jacobi sweeps x <- x + "
   "`Relaxation` (x_P - x), until no node is further from x_P than `Tolerance` "
   "times the local size. Nodes at the boundary of a region, at that of the "
   "domain, and nodes of points, lines and surfaces with rules stay where they "

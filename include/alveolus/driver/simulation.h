@@ -60,6 +60,7 @@ namespace alveolus
     {
       unsigned int steps = 0, rejected = 0, iterations = 0;
       unsigned int limited = 0, cut_back = 0, subcycles = 0;
+      unsigned int unconverged_rezonings = 0;
       unsigned int max_iterations_of_a_step = 0;
       double       smallest_quality         = 1.;
       double       largest_transfer_error   = 0.;

@@ -10,6 +10,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -82,10 +83,15 @@ namespace alveolus
     /**
      * J_n = dv_n/dV of a record: current over undeformed volume of the
      * material, by which stress and energy per undeformed volume become those
-     * per volume of the current mesh.
+     * per volume of the current mesh. This one is for laws whose record begins
+     * with the total or elastic Hencky strain and whose other deformation
+     * keeps the volume: exp(tr h).
      */
     virtual double
-    volume_ratio(const double *history) const = 0;
+    volume_ratio(const double *history) const
+    {
+      return std::exp(history[0] + history[1] + history[2]);
+    }
 
     /**
      * Bring a record back into the admissible set after a transfer, e.g. the

@@ -72,6 +72,14 @@ namespace alveolus
              const bool                  need_tangent,
              MaterialResponse           &response) const override;
 
+    /** Also counts the plastic volume change of the effective law. */
+    double
+    volume_ratio(const double *history) const override
+    {
+      return Material::volume_ratio(history) *
+             (volume_offset < 0 ? 1. : std::exp(history[volume_offset]));
+    }
+
     /** Project the fabric, see limit_fabric(). Nothing else is touched. */
     unsigned int
     make_admissible(double *history) const override;

@@ -23,11 +23,14 @@ namespace alveolus
    * 3D the base is the triangle of the three neighbours along edges, m its
    * centroid, and H = 3 V/|ABC| with the mean volume V of the tetrahedra.
    *
-   * This pulls graded meshes towards uniform ones and inverts cells at
-   * irregular vertices, so by default the triangles keep the shapes they had
-   * when the rule was attached [ours]: the foot of the height stays at its
-   * relative place on the base, and the areas in their ratios around P; the
-   * mesh of that moment is a fixed point.
+   * This pulls graded meshes towards uniform ones, and as an iteration it
+   * diverges at irregular vertices, because it does not keep affine images of
+   * a mesh. By default [ours] a vertex therefore keeps its place among its
+   * neighbours in the sense of the Laplacian on the same triangles at the time
+   * of attach(): x_P = sum w_j x_j, with w_j the row of the P1 stiffness matrix
+   * of these triangles. The weights are positive where no angle at the base is
+   * obtuse; then the iteration converges, and the mesh of attach() and all its
+   * affine images are fixed points.
    *
    * Jacobi iteration x <- x + w (x_P - x) with the factor w until no node is
    * further from its x_P than the tolerance times its local size (side of the
@@ -75,9 +78,7 @@ namespace alveolus
     struct Corner
     {
       std::array<LocalNode, dim> neighbours; ///< right-handed seen from P
-      /** Foot of the height as weights of the neighbours: 1/dim is the middle. */
-      std::array<double, dim> foot;
-      double                  share = 1.; ///< area over the mean around P
+      std::array<double, dim>    weights;    ///< of the neighbours in x_P
     };
 
     /** A node placed between others with given weights. */
@@ -87,7 +88,7 @@ namespace alveolus
       std::vector<std::pair<double, LocalNode>> parents;
     };
 
-    /** Take foot and share of the corners @p around a vertex from the mesh. */
+    /** Take the weights of the corners @p around a vertex from the mesh. */
     void
     keep_shapes(const NodalVector   &positions,
                 const LocalNode     &vertex,
@@ -99,6 +100,7 @@ namespace alveolus
 
     std::vector<std::string> on;
     std::string              shapes         = "initial";
+    bool                     equalise       = false; ///< shapes == "equal"
     double                   tolerance      = 1e-4;
     double                   relaxation     = 0.7;
     unsigned int             largest_sweeps = 500;
