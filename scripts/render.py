@@ -415,7 +415,8 @@ def figure_4(root):
 def series(root, name, times, field, table_of, title):
     """One run at several times, whole mesh, below each other."""
     all_states = states(os.path.join(root, "academic"))
-    chosen = [nearest(all_states, time) for time in times]
+    # Each state once, also if the run stopped early
+    chosen = sorted({nearest(all_states, time) for time in times})
     grids = [read(state[1]) for state in chosen]
     b = bounds(grids)
     window = (b[0] - 1, b[1] + 1, b[2] - 0.5, b[3] + 0.5)
