@@ -67,6 +67,7 @@ namespace alveolus
       where + (file.empty() ? "/Tangent modulus" : "/Table file");
     auto       points = file.empty() ? TangentTable::parse(list, name)
                                      : TangentTable::read(file, name);
+    law               = TangentTable(points, name); // checks all points
     const auto n      = points.size();
     if (tension_branch == "continued" && n > 1 && points[n - 1].first > 0. &&
         points[n - 1].first == points[n - 2].first)

@@ -15,6 +15,9 @@ namespace alveolus
 
   namespace
   {
+    /** Change of density [g/cc] and log T in an uncontrolled substep. */
+    constexpr double way_to_and_fro = 1e-3;
+
     /**
      * The equations at one point. N = 1: density; N = 7: density and the six
      * components of the fabric.
@@ -23,7 +26,8 @@ namespace alveolus
     class PointProblem
     {
     public:
-      using Values = std::array<double, N>;
+      using Values  = std::array<double, N>;
+      using Stepper = odeint::runge_kutta_dopri5<Values>;
 
       PointProblem(const RemodellingLaw &law,
                    const RemodelledBone &bone,
@@ -59,52 +63,50 @@ namespace alveolus
       }
 
       /**
-       * Rates, those of the fabric restricted to what its bounds admit.
-       * @return true if the bounds act
+       * Rates at the admissible state next to @p x: a continuous function also
+       * where the bounds of the fabric act.
        */
-      bool
+      void
       rates(const Values &x, Values &dx) const
       {
         BonePoint p = point(x);
         // Stages of a step that will be rejected may leave the physical range.
-        p.density    = std::clamp(p.density,
+        p.density = std::clamp(p.density,
                                0.5 * bone.minimum_density(),
                                1.05 * bone.undamaged_density());
-        bool limited = false;
         if constexpr (N == 7)
-          limited = bone.limit_fabric(p.density, p.log_fabric);
+          bone.limit_fabric(p.density, p.log_fabric);
 
         double stimulus = 0.;
         if (filtered)
-          stimulus =
-            *filtered *
-            (energy_at_start > 0. ? bone.energy(p) / energy_at_start : 1.);
+          stimulus = *filtered * (energy_at_start > 0. ?
+                                    bone.energy(p) / energy_at_start :
+                                    1.);
         else
           stimulus = law.stimulus(bone, p);
-        RemodellingRates r = law.rates(bone, p, stimulus);
-
-        if constexpr (N == 7)
-          {
-            // One-sided derivative of the projected state: where a bound acts,
-            // the fabric slides along it.
-            const double speed = r.log_fabric.norm();
-            if (speed > 0.)
-              {
-                const double          dt   = 1e-6 / speed;
-                SymmetricTensor<2, 3> next = p.log_fabric + dt * r.log_fabric;
-                if (bone.limit_fabric(p.density + dt * r.density, next))
-                  {
-                    r.log_fabric = (next - p.log_fabric) / dt;
-                    limited      = true;
-                  }
-              }
-          }
-        dx[0] = r.density;
+        const RemodellingRates r = law.rates(bone, p, stimulus);
+        dx[0]                    = r.density;
         if constexpr (N == 7)
           for (unsigned int i = 0; i < 6; ++i)
             dx[i + 1] = r.log_fabric.access_raw_entry(i);
-        return limited;
       }
+
+      /** Project the fabric; true if it had to be changed. */
+      bool
+      limit_fabric(Values &x) const;
+
+      /**
+       * Repeat a substep from @p old, which has crossed a bound of the density,
+       * so short that it ends at the bound.
+       * @return its length
+       */
+      double
+      stop_at_bound(const Values &old,
+                    const Values &old_rates,
+                    const double  step,
+                    const double  bound,
+                    const double  tolerance,
+                    Values       &x) const;
 
       RemodellingReport
       integrate(Values &x, const double end, const double tolerance) const;
@@ -120,113 +122,157 @@ namespace alveolus
 
 
     template <std::size_t N>
+    bool
+    PointProblem<N>::limit_fabric(Values &x) const
+    {
+      if constexpr (N == 7)
+        {
+          BonePoint p = point(x);
+          if (bone.limit_fabric(p.density, p.log_fabric))
+            {
+              x = values(p);
+              return true;
+            }
+        }
+      return false;
+    }
+
+
+
+    template <std::size_t N>
+    double
+    PointProblem<N>::stop_at_bound(const Values &old,
+                                   const Values &old_rates,
+                                   const double  step,
+                                   const double  bound,
+                                   const double  tolerance,
+                                   Values       &x) const
+    {
+      Stepper    stepper;
+      const auto system = [this](const Values &y, Values &dy, double) {
+        rates(y, dy);
+      };
+      Values rates_at_end;
+      double a = 0., value_a = old[0] - bound;
+      double b = step, value_b = x[0] - bound;
+      double c = step;
+      for (unsigned int i = 0;
+           i < 60 && std::abs(x[0] - bound) > 0.01 * tolerance;
+           ++i)
+        {
+          // regula falsi, every third time bisection
+          c = (i % 3 == 2) ? 0.5 * (a + b) :
+                             (a * value_b - b * value_a) / (value_b - value_a);
+          stepper.do_step(system, old, old_rates, 0., x, rates_at_end, c);
+          const double value = x[0] - bound;
+          (value * value_b > 0. ? b : a)             = c;
+          (value * value_b > 0. ? value_b : value_a) = value;
+        }
+      x[0] = bound;
+      return c;
+    }
+
+
+
+    template <std::size_t N>
     RemodellingReport
     PointProblem<N>::integrate(Values      &x,
                                const double end,
                                const double tolerance) const
     {
-      using Stepper = odeint::runge_kutta_dopri5<Values>;
-      Stepper single;
-      auto    controlled =
-        odeint::make_controlled(tolerance, tolerance, Stepper());
-      const auto system = [this](const Values &y, Values &dy, double) {
+      Stepper    uncontrolled;
+      auto       controlled = odeint::make_controlled(tolerance,
+                                                tolerance,
+                                                Stepper());
+      const auto system     = [this](const Values &y, Values &dy, double) {
         rates(y, dy);
+      };
+      const auto norm = [](const Values &v, const std::size_t first) {
+        double sum = 0.;
+        for (std::size_t i = first; i < N; ++i)
+          sum += v[i] * v[i];
+        return std::sqrt(sum);
       };
 
       RemodellingReport report;
       const double      lower = bone.minimum_density();
       const double      upper = bone.undamaged_density();
       x[0]                    = std::clamp(x[0], lower, upper);
-      if constexpr (N == 7)
-        {
-          BonePoint p = point(x);
-          if (bone.limit_fabric(p.density, p.log_fabric))
-            {
-              ++report.n_fabric_limited;
-              x = values(p);
-            }
-        }
+      if (limit_fabric(x))
+        ++report.n_fabric_limited;
+
+      // Along a bound the fabric leaves the admissible set during a substep and
+      // is brought back after it: an error of first order that error control
+      // does not see, so the way is kept short.
+      const double way_along_bound = std::min(0.1, 30. * std::sqrt(tolerance));
 
       Values dx{};
       rates(x, dx);
-      double t = 0., dt = end;
+      double       t = 0., dt = end;
+      unsigned int reversals = 0, since_reversal = 0;
       while (end - t > 1e-12 * end)
         {
-          // At a bound, or in the lazy zone, a point of fixed strain stays.
-          report.at_lower_bound = (x[0] <= lower && dx[0] <= 0.);
-          report.at_upper_bound = (x[0] >= upper && dx[0] >= 0.);
-          const bool resting =
-            std::all_of(dx.begin(), dx.end(), [](const double v) {
-              return v == 0.;
-            });
-          if (resting || report.at_lower_bound || report.at_upper_bound)
+          // Nothing depends on time: a point at a bound of the density, or in
+          // the lazy zone, stays there.
+          if (norm(dx, 0) == 0. || (x[0] <= lower && dx[0] <= 0.) ||
+              (x[0] >= upper && dx[0] >= 0.))
             break;
-
-          const Values old = x, old_rates = dx;
-          const double old_t = t;
-          dt                 = std::min(dt, end - t);
-          const double tried = dt;
-          if (controlled.try_step(system, x, dx, t, dt) == odeint::fail)
-            {
-              if (dt < 1e-13 * end || !std::isfinite(dt))
-                throw RunError(
-                  "Remodelling",
-                  "the integration stopped after " +
-                    std::to_string(report.n_substeps) + " substeps at " +
-                    std::to_string(t / end) + " of the time step, density " +
-                    std::to_string(x[0]) + " g/cc, rate " +
-                    std::to_string(dx[0]) + " g/cc/T",
-                  "reduce the time step, or smooth the sign of the stimulus "
-                  "by 'Pressure smoothing'");
-              continue;
-            }
-          ++report.n_substeps;
-          if (report.n_substeps > 100000)
+          if (report.n_substeps > 100000 || !(dt > 1e-13 * end))
             throw RunError("Remodelling",
-                           "more than 100000 substeps at a point, density " +
-                             std::to_string(x[0]) + " g/cc",
+                           "the integration stopped after " +
+                             std::to_string(report.n_substeps) +
+                             " substeps at the fraction " +
+                             std::to_string(t / end) +
+                             " of the time step, density " +
+                             std::to_string(x[0]) + " g/cc, rate " +
+                             std::to_string(dx[0]) + " g/cc/T",
                            "reduce the time step");
 
-          if (x[0] < lower || x[0] > upper)
+          dt               = std::min(dt, end - t);
+          const Values old = x, old_rates = dx;
+          const double old_t = t;
+          double       tried = dt;
+          if (reversals > 10)
             {
-              // Shorten the step so that it ends at the bound.
-              const double bound = x[0] < lower ? lower : upper;
-              double       a = 0., value_a = old[0] - bound;
-              double       b = tried, value_b = x[0] - bound;
-              for (unsigned int i = 0;
-                   i < 60 && std::abs(x[0] - bound) > 0.01 * tolerance;
-                   ++i)
-                {
-                  // regula falsi, every third time bisection
-                  double c = (i % 3 == 2) ? 0.5 * (a + b)
-                                          : (a * value_b - b * value_a) /
-                                              (value_b - value_a);
-                  single.do_step(system, old, old_rates, old_t, x, dx, c);
-                  if ((x[0] - bound) * value_b > 0.)
-                    {
-                      b       = c;
-                      value_b = x[0] - bound;
-                    }
-                  else
-                    {
-                      a       = c;
-                      value_a = x[0] - bound;
-                    }
-                  t = old_t + c;
-                }
-              x[0] = bound;
+              // Between formation and resorption, e.g. where the trace of the
+              // stress vanishes, the point is driven to and fro: there is no
+              // error to control, only a small step (Filippov's solution).
+              tried = std::min(way_to_and_fro / norm(dx, 0), end - t);
+              uncontrolled.do_step(
+                system, old, old_rates, t, x, dx, tried);
+              t += tried;
+              dt = tried;
+              ++report.n_uncontrolled;
+            }
+          else if (controlled.try_step(system, x, dx, t, dt) == odeint::fail)
+            continue;
+          ++report.n_substeps;
+
+          if (x[0] < lower || x[0] > upper)
+            t = old_t + stop_at_bound(old,
+                                      old_rates,
+                                      tried,
+                                      x[0] < lower ? lower : upper,
+                                      tolerance,
+                                      x);
+          const bool limited = limit_fabric(x);
+          rates(x, dx);
+          if (limited)
+            {
+              ++report.n_fabric_limited;
+              const double speed = norm(dx, 1);
+              if (dt * speed > way_along_bound)
+                dt = way_along_bound / speed;
             }
 
-          bool limited = false;
-          if constexpr (N == 7)
+          ++since_reversal;
+          if (dx[0] * old_rates[0] < 0.)
             {
-              BonePoint p = point(x);
-              limited     = bone.limit_fabric(p.density, p.log_fabric);
-              x           = values(p);
+              ++reversals;
+              since_reversal = 0;
             }
-          limited = rates(x, dx) || limited;
-          if (limited)
-            ++report.n_fabric_limited;
+          else if (since_reversal > 10)
+            reversals = 0;
         }
       report.at_lower_bound = x[0] <= lower;
       report.at_upper_bound = x[0] >= upper;

@@ -12,7 +12,9 @@ namespace alveolus
     double       density_change   = 0.; ///< [g/cc]
     unsigned int n_substeps       = 0;
     unsigned int n_fabric_limited = 0; ///< projections onto the fabric bounds
-    bool         at_lower_bound   = false;
+    /** Substeps without error control, see LocalIntegrator. */
+    unsigned int n_uncontrolled = 0;
+    bool         at_lower_bound = false;
     bool         at_upper_bound   = false;
   };
 
@@ -20,6 +22,11 @@ namespace alveolus
    * Advances density and fabric of one point at fixed elastic strain with error
    * control (Boost.odeint, Dormand-Prince), re-evaluating the stimulus with the
    * evolving density; bounds are respected and counted.
+   *
+   * Where the rate keeps jumping between formation and resorption (a signed
+   * stimulus where the trace of the stress vanishes, without `Pressure
+   * smoothing`), no error can be controlled: such a point is integrated with
+   * substeps that change it by 1e-3, and these are counted.
    */
   class LocalIntegrator
   {
