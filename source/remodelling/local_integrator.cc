@@ -15,9 +15,6 @@ namespace alveolus
 
   namespace
   {
-    /** Change of density [g/cc] and log T in an uncontrolled substep. */
-    constexpr double way_to_and_fro = 1e-3;
-
     /**
      * The equations at one point. N = 1: density; N = 7: density and the six
      * components of the fabric.
@@ -79,13 +76,21 @@ namespace alveolus
 
         double stimulus = 0.;
         if (filtered)
-          stimulus = *filtered * (energy_at_start > 0. ?
-                                    bone.energy(p) / energy_at_start :
-                                    1.);
+          stimulus =
+            *filtered *
+            (energy_at_start > 0. ? bone.energy(p) / energy_at_start : 1.);
         else
           stimulus = law.stimulus(bone, p);
+        // Not a number would look like the lazy zone.
+        if (!std::isfinite(stimulus))
+          throw RunError("Remodelling",
+                         "the stimulus is " + std::to_string(stimulus) +
+                           " at density " + std::to_string(x[0]) + " g/cc",
+                         "look for the first step with irregular stresses");
         const RemodellingRates r = law.rates(bone, p, stimulus);
         dx[0]                    = r.density;
+        formation_seen           = formation_seen || r.density > 0.;
+        resorption_seen          = resorption_seen || r.density < 0.;
         if constexpr (N == 7)
           for (unsigned int i = 0; i < 6; ++i)
             dx[i + 1] = r.log_fabric.access_raw_entry(i);
@@ -108,6 +113,18 @@ namespace alveolus
                     const double  tolerance,
                     Values       &x) const;
 
+      /**
+       * After a substep that has met rates of both signs: look for a jump
+       * between them, on the way to its end @p x or straight on from its
+       * beginning.
+       * @return true if there is one; @p x is then the point before it
+       */
+      bool
+      find_reversal(const Values &old,
+                    const Values &old_rates,
+                    const double  step,
+                    Values       &x) const;
+
       RemodellingReport
       integrate(Values &x, const double end, const double tolerance) const;
 
@@ -117,6 +134,8 @@ namespace alveolus
       const BonePoint       start;
       const double         *filtered;
       const double          energy_at_start;
+      /** Signs of the density rate that the current substep has met. */
+      mutable bool formation_seen = false, resorption_seen = false;
     };
 
 
@@ -161,10 +180,10 @@ namespace alveolus
            ++i)
         {
           // regula falsi, every third time bisection
-          c = (i % 3 == 2) ? 0.5 * (a + b) :
-                             (a * value_b - b * value_a) / (value_b - value_a);
+          c = (i % 3 == 2) ? 0.5 * (a + b)
+                           : (a * value_b - b * value_a) / (value_b - value_a);
           stepper.do_step(system, old, old_rates, 0., x, rates_at_end, c);
-          const double value = x[0] - bound;
+          const double value                         = x[0] - bound;
           (value * value_b > 0. ? b : a)             = c;
           (value * value_b > 0. ? value_b : value_a) = value;
         }
@@ -175,16 +194,53 @@ namespace alveolus
 
 
     template <std::size_t N>
+    bool
+    PointProblem<N>::find_reversal(const Values &old,
+                                   const Values &old_rates,
+                                   const double  step,
+                                   Values       &x) const
+    {
+      Values straight;
+      for (std::size_t i = 0; i < N; ++i)
+        straight[i] = old[i] + step * old_rates[i];
+      for (Values other : {x, straight})
+        {
+          Values here = old, here_rates = old_rates, other_rates;
+          rates(other, other_rates);
+          if (here_rates[0] * other_rates[0] >= 0.)
+            continue;
+          const double change = std::abs(here_rates[0] - other_rates[0]);
+          for (unsigned int n = 0; n < 20; ++n)
+            {
+              Values between, between_rates;
+              for (std::size_t i = 0; i < N; ++i)
+                between[i] = 0.5 * (here[i] + other[i]);
+              rates(between, between_rates);
+              const bool same       = between_rates[0] * here_rates[0] > 0.;
+              (same ? here : other) = between;
+              (same ? here_rates : other_rates) = between_rates;
+            }
+          // A continuous change of sign is no matter for us.
+          if (std::abs(here_rates[0] - other_rates[0]) > 0.1 * change)
+            {
+              x = here;
+              return true;
+            }
+        }
+      return false;
+    }
+
+
+
+    template <std::size_t N>
     RemodellingReport
     PointProblem<N>::integrate(Values      &x,
                                const double end,
                                const double tolerance) const
     {
-      Stepper    uncontrolled;
-      auto       controlled = odeint::make_controlled(tolerance,
-                                                tolerance,
-                                                Stepper());
-      const auto system     = [this](const Values &y, Values &dy, double) {
+      auto controlled =
+        odeint::make_controlled(tolerance, tolerance, Stepper());
+      const auto system = [this](const Values &y, Values &dy, double) {
         rates(y, dy);
       };
       const auto norm = [](const Values &v, const std::size_t first) {
@@ -208,8 +264,7 @@ namespace alveolus
 
       Values dx{};
       rates(x, dx);
-      double       t = 0., dt = end;
-      unsigned int reversals = 0, since_reversal = 0;
+      double t = 0., dt = end;
       while (end - t > 1e-12 * end)
         {
           // Nothing depends on time: a point at a bound of the density, or in
@@ -217,7 +272,8 @@ namespace alveolus
           if (norm(dx, 0) == 0. || (x[0] <= lower && dx[0] <= 0.) ||
               (x[0] >= upper && dx[0] >= 0.))
             break;
-          if (report.n_substeps > 100000 || !(dt > 1e-13 * end))
+          if (report.n_substeps > 100000 || !(dt > 1e-13 * end) ||
+              !std::isfinite(norm(dx, 0)))
             throw RunError("Remodelling",
                            "the integration stopped after " +
                              std::to_string(report.n_substeps) +
@@ -231,21 +287,32 @@ namespace alveolus
           dt               = std::min(dt, end - t);
           const Values old = x, old_rates = dx;
           const double old_t = t;
-          double       tried = dt;
-          if (reversals > 10)
-            {
-              // Between formation and resorption, e.g. where the trace of the
-              // stress vanishes, the point is driven to and fro: there is no
-              // error to control, only a small step (Filippov's solution).
-              tried = std::min(way_to_and_fro / norm(dx, 0), end - t);
-              uncontrolled.do_step(
-                system, old, old_rates, t, x, dx, tried);
-              t += tried;
-              dt = tried;
-              ++report.n_uncontrolled;
-            }
-          else if (controlled.try_step(system, x, dx, t, dt) == odeint::fail)
+          const double tried = dt;
+          formation_seen     = dx[0] > 0.;
+          resorption_seen    = dx[0] < 0.;
+          if (controlled.try_step(system, x, dx, t, dt) == odeint::fail)
             continue;
+          if (formation_seen && resorption_seen)
+            {
+              double way = 0.;
+              for (std::size_t i = 0; i < N; ++i)
+                way = std::max(way, std::abs(x[i] - old[i]));
+              if (way > 1000. * tolerance)
+                {
+                  // Too long a step to find where the sign changes.
+                  x  = old;
+                  dx = old_rates;
+                  t  = old_t;
+                  dt = 0.2 * tried;
+                  continue;
+                }
+              if (find_reversal(old, old_rates, tried, x))
+                {
+                  limit_fabric(x);
+                  report.at_reversal = true;
+                  break;
+                }
+            }
           ++report.n_substeps;
 
           if (x[0] < lower || x[0] > upper)
@@ -264,15 +331,6 @@ namespace alveolus
               if (dt * speed > way_along_bound)
                 dt = way_along_bound / speed;
             }
-
-          ++since_reversal;
-          if (dx[0] * old_rates[0] < 0.)
-            {
-              ++reversals;
-              since_reversal = 0;
-            }
-          else if (since_reversal > 10)
-            reversals = 0;
         }
       report.at_lower_bound = x[0] <= lower;
       report.at_upper_bound = x[0] >= upper;

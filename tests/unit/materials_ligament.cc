@@ -59,8 +59,8 @@ namespace
   std::pair<double, double>
   integrate(const double e, const bool continued)
   {
-    const unsigned int n = 200000;
-    const double       h = e / n;
+    const unsigned int n      = 200000;
+    const double       h      = e / n;
     double             stress = 0., energy = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
@@ -73,8 +73,8 @@ namespace
   }
 
   const Tensor<1, 3> normal = Tensor<1, 3>({2. / 3., -1. / 3., 2. / 3.});
-  const Tensor<1, 3> slide  = Tensor<1, 3>({1. / std::sqrt(2.), 0.,
-                                            -1. / std::sqrt(2.)});
+  const Tensor<1, 3> slide =
+    Tensor<1, 3>({1. / std::sqrt(2.), 0., -1. / std::sqrt(2.)});
 } // namespace
 
 
@@ -87,8 +87,18 @@ TEST(Ligament, NormalTractionIsTheIntegratedTable)
         make({{"Table file", table_file},
               {"Tension branch", continued ? "continued" : "as printed"}});
       double worst = 0.;
-      for (const double e :
-           {-1.1, -0.9, -0.82, -0.5, -0.3, -0.25, -0.1, 0.1, 0.3, 0.63, 0.8, 2.})
+      for (const double e : {-1.1,
+                             -0.9,
+                             -0.82,
+                             -0.5,
+                             -0.3,
+                             -0.25,
+                             -0.1,
+                             0.1,
+                             0.3,
+                             0.63,
+                             0.8,
+                             2.})
         {
           Tensor<1, 3> t;
           Tensor<2, 3> K;
@@ -98,9 +108,8 @@ TEST(Ligament, NormalTractionIsTheIntegratedTable)
           EXPECT_NEAR(law->shear_strain(jump, normal), 0., 1e-14);
           law->evaluate(jump, normal, t, K, energy);
           const auto [stress, W] = integrate(e, continued);
-          worst                  = std::max({worst,
-                            std::abs(t * normal - stress),
-                            std::abs(energy - 0.2 * W)});
+          worst                  = std::max(
+            {worst, std::abs(t * normal - stress), std::abs(energy - 0.2 * W)});
           EXPECT_LT((t - stress * normal).norm(), 1e-4);
         }
       EXPECT_LT(worst, 1e-4); // what the midpoint rule leaves at the jumps
@@ -118,8 +127,8 @@ TEST(Ligament, TangentialTraction)
 {
   for (const std::string kind : {"table", "initial"})
     {
-      const auto law = make({{"Tangent modulus", table_list},
-                             {"Tangential stiffness", kind}});
+      const auto law =
+        make({{"Tangent modulus", table_list}, {"Tangential stiffness", kind}});
       for (const double shear : {1e-9, 0.05, 0.3, 1.5})
         {
           Tensor<1, 3> t;
@@ -127,17 +136,15 @@ TEST(Ligament, TangentialTraction)
           double       energy;
           law->evaluate(0.2 * shear * slide, normal, t, K, energy);
           const auto [stress, W] =
-            kind == "table" ?
-              integrate(shear, true) :
-              std::pair<double, double>{0.068 * shear,
-                                        0.034 * shear * shear};
+            kind == "table"
+              ? integrate(shear, true)
+              : std::pair<double, double>{0.068 * shear, 0.034 * shear * shear};
           EXPECT_NEAR(t * slide, stress / 2.98, 1e-5);
           EXPECT_NEAR(t * normal, 0., 1e-15);
           EXPECT_NEAR(energy, 0.2 * W / 2.98, 1e-5);
           EXPECT_NEAR(slide * K * slide,
-                      (kind == "table" ? printed_modulus(
-                                           std::min(shear, 0.6)) :
-                                         0.068) /
+                      (kind == "table" ? printed_modulus(std::min(shear, 0.6))
+                                       : 0.068) /
                         2.98 / 0.2,
                       1e-9);
         }
@@ -152,12 +159,11 @@ TEST(Ligament, DerivesFromItsEnergy)
   const auto law = make({{"Tangent modulus", table_list}});
   for (unsigned int n = 0; n < 200; ++n)
     {
-      const Tensor<1, 3> jump({random(generator),
-                               random(generator),
-                               random(generator)});
-      Tensor<1, 3>       t, plus, minus;
-      Tensor<2, 3>       K, unused;
-      double             energy, e_plus, e_minus;
+      const Tensor<1, 3> jump(
+        {random(generator), random(generator), random(generator)});
+      Tensor<1, 3> t, plus, minus;
+      Tensor<2, 3> K, unused;
+      double       energy, e_plus, e_minus;
       law->evaluate(jump, normal, t, K, energy);
       EXPECT_LT((K - transpose(K)).norm(), 1e-13);
       for (unsigned int i = 0; i < 3; ++i)
@@ -166,19 +172,17 @@ TEST(Ligament, DerivesFromItsEnergy)
           d[i] = 1e-6;
           law->evaluate(jump + d, normal, plus, unused, e_plus);
           law->evaluate(jump - d, normal, minus, unused, e_minus);
-          first = std::max(first,
-                           std::abs((e_plus - e_minus) / 2e-6 - t[i]));
+          first = std::max(first, std::abs((e_plus - e_minus) / 2e-6 - t[i]));
           // steps that cross a jump of the modulus are no derivative
           const auto strain = [&](const Tensor<1, 3> &j) {
             return std::pair<bool, bool>(law->normal_strain(j, normal) > 0.14,
-                                         law->normal_strain(j, normal) <
-                                           -0.82);
+                                         law->normal_strain(j, normal) < -0.82);
           };
           if (strain(jump + d) == strain(jump - d))
             for (unsigned int j = 0; j < 3; ++j)
-              second = std::max(second,
-                                std::abs((plus[j] - minus[j]) / 2e-6 -
-                                         K[j][i]));
+              second =
+                std::max(second,
+                         std::abs((plus[j] - minus[j]) / 2e-6 - K[j][i]));
         }
     }
   std::cout << "traction from energy " << first << ", tangent from traction "
@@ -199,8 +203,8 @@ TEST(Ligament, BadTables)
 {
   EXPECT_THROW(make({}), InputError);
   EXPECT_THROW(make({{"Table file", "/no/such/file.csv"}}), InputError);
-  EXPECT_THROW(make({{"Table file", table_file},
-                     {"Tangent modulus", table_list}}),
+  EXPECT_THROW(make(
+                 {{"Table file", table_file}, {"Tangent modulus", table_list}}),
                InputError);
   for (const std::string list : {"0: 1, -1: 2",
                                  "0 1, 1: 2",
@@ -219,8 +223,7 @@ TEST(Ligament, BadTables)
     }
   catch (const InputError &error)
     {
-      EXPECT_NE(std::string(error.what()).find(file + ":3"),
-                std::string::npos)
+      EXPECT_NE(std::string(error.what()).find(file + ":3"), std::string::npos)
         << error.what();
     }
   std::remove(file.c_str());
