@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/materials/remodelled_bone.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

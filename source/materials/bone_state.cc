@@ -3,6 +3,7 @@
 #include <alveolus/materials/bone_tissue.h>
 #include <alveolus/materials/remodelled_bone.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace alveolus

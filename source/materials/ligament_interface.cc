@@ -65,9 +65,10 @@ namespace alveolus
                        "leave one of them empty");
     const std::string name =
       where + (file.empty() ? "/Tangent modulus" : "/Table file");
-    auto       points = file.empty() ? TangentTable::parse(list, name)
-                                     : TangentTable::read(file, name);
-    const auto n      = points.size();
+    auto points  = file.empty() ? TangentTable::parse(list, name)
+                                : TangentTable::read(file, name);
+    law          = TangentTable(points, name); // checks all points
+    const auto n = points.size();
     if (tension_branch == "continued" && n > 1 && points[n - 1].first > 0. &&
         points[n - 1].first == points[n - 2].first)
       points.pop_back();

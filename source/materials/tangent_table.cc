@@ -3,6 +3,7 @@
 #include <alveolus/materials/tangent_table.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <limits>

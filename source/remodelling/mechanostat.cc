@@ -2,6 +2,7 @@
 #include <alveolus/materials/bone_tissue.h>
 #include <alveolus/remodelling/mechanostat.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace alveolus

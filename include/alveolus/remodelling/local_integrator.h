@@ -12,14 +12,21 @@ namespace alveolus
     double       density_change   = 0.; ///< [g/cc]
     unsigned int n_substeps       = 0;
     unsigned int n_fabric_limited = 0; ///< projections onto the fabric bounds
-    bool         at_lower_bound   = false;
-    bool         at_upper_bound   = false;
+    /** Came to rest where formation and resorption meet in a jump. */
+    bool at_reversal    = false;
+    bool at_lower_bound = false;
+    bool at_upper_bound = false;
   };
 
   /**
    * Advances density and fabric of one point at fixed elastic strain with error
    * control (Boost.odeint, Dormand-Prince), re-evaluating the stimulus with the
    * evolving density; bounds are respected and counted.
+   *
+   * A signed stimulus jumps where the trace of the stress vanishes, from
+   * formation to resorption. A point that is driven there from both sides rests
+   * there, which is the limit of a smoothed sign (`Pressure smoothing`): in
+   * between lies the homeostatic stimulus. Such points are reported.
    */
   class LocalIntegrator
   {
