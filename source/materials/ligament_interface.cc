@@ -49,7 +49,8 @@ namespace alveolus
 
 
   void
-  LigamentInterface::initialize(const std::string &where)
+  LigamentInterface::initialize(const std::string &where,
+                                const std::string &input_directory)
   {
     if (!(thickness > 0.))
       throw InputError(where + "/Thickness",
@@ -65,8 +66,12 @@ namespace alveolus
                        "leave one of them empty");
     const std::string name =
       where + (file.empty() ? "/Tangent modulus" : "/Table file");
-    auto points  = file.empty() ? TangentTable::parse(list, name)
-                                : TangentTable::read(file, name);
+    auto points =
+      file.empty()
+        ? TangentTable::parse(list, name)
+        : TangentTable::read(file.front() == '/' ? file
+                                                 : input_directory + "/" + file,
+                             name);
     law          = TangentTable(points, name); // checks all points
     const auto n = points.size();
     if (tension_branch == "continued" && n > 1 && points[n - 1].first > 0. &&

@@ -27,7 +27,8 @@ namespace alveolus
           out << "No parameters.\n\n";
           return;
         }
-      out << "| parameter | default | accepted | meaning |\n|---|---|---|---|\n";
+      out
+        << "| parameter | default | accepted | meaning |\n|---|---|---|---|\n";
       const auto cell = [](std::string text) {
         for (std::string::size_type at = 0;
              (at = text.find('|', at)) != std::string::npos;

@@ -17,7 +17,7 @@ namespace alveolus
 
     for (auto &law : interface_law_list)
       {
-        law.object->initialize(law.where);
+        law.object->initialize(law.where, input_directory);
         interface_laws[law.name] = std::move(law.object);
       }
     for (auto &law : remodelling_laws)
@@ -42,12 +42,12 @@ namespace alveolus
           if (other.material == region.material &&
               other.remodelling != region.remodelling)
             throw InputError("Regions / " + other.name + " / Remodelling",
-                             "is '" + other.remodelling +
-                               "', but region '" + region.name +
-                               "' uses the same material with '" +
+                             "is '" + other.remodelling + "', but region '" +
+                               region.name + "' uses the same material with '" +
                                region.remodelling + "'",
                              "define a material of its own for it");
-        bone->set_remodelled(true, remodelling_laws[law].object->changes_fabric());
+        bone->set_remodelled(true,
+                             remodelling_laws[law].object->changes_fabric());
       }
     for (auto &material : materials)
       material.object->initialize(dim, material.where);
@@ -59,9 +59,9 @@ namespace alveolus
     if (output_directory.empty())
       {
         std::string name = text.file_name.substr(
-          text.file_name.find_last_of('/') == std::string::npos ?
-            0 :
-            text.file_name.find_last_of('/') + 1);
+          text.file_name.find_last_of('/') == std::string::npos
+            ? 0
+            : text.file_name.find_last_of('/') + 1);
         output_directory = "output/" + name.substr(0, name.rfind(".prm"));
       }
     if (time.initial_step < time.minimum_step)
@@ -96,8 +96,9 @@ namespace alveolus
                            "write subsection " + section + " / subsection " +
                              name + " / set Type = one of: " +
                              Registry<Interface>::names(", "));
-        member.object = Registry<Interface>::create(
-          member.type, text.origin(path) + ": " + member.where + " / Type");
+        member.object = Registry<Interface>::create(member.type,
+                                                    text.origin(path) + ": " +
+                                                      member.where + " / Type");
         prm.enter_subsection(name);
         prm.declare_entry("Type", member.type, Patterns::Anything(), "");
         member.object->declare_parameters(prm);
@@ -132,8 +133,9 @@ namespace alveolus
                        "set it to one of: " +
                          Registry<MeshSource<dim>>::names(", "));
     prm.declare_entry("Type", mesh_type, Patterns::Anything(), "");
-    mesh_source = Registry<MeshSource<dim>>::create(
-      mesh_type, text.origin("Mesh/Type") + ": Mesh / Type");
+    mesh_source = Registry<MeshSource<dim>>::create(mesh_type,
+                                                    text.origin("Mesh/Type") +
+                                                      ": Mesh / Type");
     prm.enter_subsection(mesh_type);
     mesh_source->declare_parameters(prm);
     prm.leave_subsection();
@@ -243,8 +245,7 @@ namespace alveolus
       if (remodelling_laws[i].name == region.remodelling)
         return static_cast<int>(i);
     throw InputError(text.origin("Regions/" + region.name + "/Remodelling"),
-                     "there is no remodelling law '" + region.remodelling +
-                       "'",
+                     "there is no remodelling law '" + region.remodelling + "'",
                      "write none, or a name from Remodelling / Names");
   }
 

@@ -28,10 +28,12 @@ namespace alveolus
     /**
      * Check the parameters after parsing and read tables.
      * @param where path of the subsection, for messages
+     * @param input_directory folder that relative file names refer to
      * @throws InputError
      */
     virtual void
-    initialize(const std::string &where) = 0;
+    initialize(const std::string &where,
+               const std::string &input_directory = ".") = 0;
 
     /**
      * @param jump     displacement of the tooth minus that of the bone [mm]

@@ -24,7 +24,8 @@ namespace alveolus
     declare_parameters(dealii::ParameterHandler &prm) override;
 
     void
-    initialize(const std::string &where) override;
+    initialize(const std::string &where,
+               const std::string &input_directory = ".") override;
 
     void
     evaluate(const dealii::Tensor<1, 3> &jump,
