@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/driver/simulation.h>
 
+#include <deal.II/base/multithread_info.h>
 #include <deal.II/base/revision.h>
 
 #include <nlohmann/json.hpp>
