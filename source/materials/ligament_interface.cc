@@ -38,6 +38,18 @@ namespace alveolus
                       "at the largest strain (rupture) is left out, and the "
                       "modulus before it goes on.",
                       Selection("continued|as printed"));
+    prm.add_parameter(
+      "Locking strain",
+      locking_strain,
+      "Engineering strain, of either sign and of shear, beyond "
+      "which the layer is stiff: in compression the tooth meets "
+      "the bone (-1 is no thickness left), in tension and shear "
+      "the fibres are taut [-]; 0: never.",
+      Patterns::Double(0.));
+    prm.add_parameter("Locking modulus",
+                      locking_modulus,
+                      "Tangent modulus beyond the locking strain [MPa].",
+                      Patterns::Double(0.));
     prm.add_parameter("Tangential stiffness",
                       tangential,
                       "table: shear modulus from the tension branch of the "
@@ -77,7 +89,20 @@ namespace alveolus
     if (tension_branch == "continued" && n > 1 && points[n - 1].first > 0. &&
         points[n - 1].first == points[n - 2].first)
       points.pop_back();
-    law       = TangentTable(points, name);
+    law = TangentTable(points, name);
+    if (locking_strain > 0.)
+      {
+        // Inside the limits the table as it is, beyond them the stiff branches
+        const double                           limit  = locking_strain;
+        std::vector<std::pair<double, double>> locked = {
+          {-limit, locking_modulus}, {-limit, law.modulus(-limit)}};
+        for (const auto &point : points)
+          if (std::abs(point.first) < limit)
+            locked.push_back(point);
+        locked.emplace_back(limit, law.modulus(limit));
+        locked.emplace_back(limit, locking_modulus);
+        law = TangentTable(locked, name);
+      }
     shear_law = (tangential == "table")
                   ? law
                   : TangentTable({{0., law.modulus(0.)}}, name);

@@ -15,7 +15,10 @@ namespace alveolus
    * shear stress: slope E_t(gamma)/(2(1+nu)) along the tension branch of the
    * table, or the constant initial slope E_0/(2(1+nu)). (Mengoni, Ponthot and
    * Boman, Med. Eng. Phys. 38 (2016) 140, Table 2 and section on model 1; the
-   * treatment of shear is ours.)
+   * treatment of shear is ours.) Beyond an optional locking strain the layer is
+   * stiff in both directions and in shear [ours]: without it a tooth that needs
+   * hundreds of MPa passes far through the bone, whose tabulated ligament never
+   * bears more than 13.5 MPa per unit of strain.
    */
   class LigamentInterface : public InterfaceLaw
   {
@@ -50,8 +53,10 @@ namespace alveolus
     }
 
   private:
-    double      thickness = 0.2;
-    double      poisson   = 0.49;
+    double      thickness       = 0.2;
+    double      poisson         = 0.49;
+    double      locking_strain  = 0.; ///< 0: the table goes on
+    double      locking_modulus = 0.;
     std::string list;
     std::string file;
     std::string tension_branch = "continued";
