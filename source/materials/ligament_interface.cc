@@ -45,11 +45,11 @@ namespace alveolus
       "which the layer is stiff: in compression the tooth meets "
       "the bone (-1 is no thickness left), in tension and shear "
       "the fibres are taut [-]; 0: never.",
-      Patterns::Double(0.));
+      Double(0.));
     prm.add_parameter("Locking modulus",
                       locking_modulus,
                       "Tangent modulus beyond the locking strain [MPa].",
-                      Patterns::Double(0.));
+                      Double(0.));
     prm.add_parameter("Tangential stiffness",
                       tangential,
                       "table: shear modulus from the tension branch of the "
