@@ -70,6 +70,15 @@ namespace
 
 
 
+  /** Then direct solvers are slow on small problems: fewer of them are run. */
+  bool
+  many_processes()
+  {
+    return Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1;
+  }
+
+
+
   /** Order of convergence between two successive halvings of the mesh. */
   double
   order(const double coarse, const double fine)
@@ -164,6 +173,8 @@ TEST(ThickCylinder, LameSolution)
 // that belongs to it
 TEST(ThickCylinder, IncompressibleMooneyRivlin)
 {
+  if (many_processes())
+    GTEST_SKIP() << "on one process";
   const double exact = cylinder_pressure(1.5, 0.5);
   EXPECT_NEAR(exact, 0.4282284090965, 1e-12); // as in the parameter file
   const auto errors = [&](const unsigned int k, const Sets &sets) {
@@ -248,18 +259,24 @@ TEST(CookMembrane, PublishedTipDisplacements)
   const std::vector<std::pair<unsigned int, double>> linear = {
     {1, 5.15}, {2, 8.72}, {4, 12.02}, {8, 13.61}, {16, 14.13}};
   for (const auto &[n, published] : linear)
-    EXPECT_NEAR(run("cook-membrane", {membrane_mesh(n), degree + "1"}, column),
-                published,
-                0.0051)
-      << n << " elements of degree 1";
+    if (n <= 4 || !many_processes())
+      EXPECT_NEAR(run("cook-membrane",
+                      {membrane_mesh(n), degree + "1"},
+                      column),
+                  published,
+                  0.0051)
+        << n << " elements of degree 1";
   const std::vector<std::pair<unsigned int, double>> quadratic = {{1, 12.19},
                                                                   {2, 13.83},
                                                                   {4, 14.22}};
   for (const auto &[n, published] : quadratic)
-    EXPECT_NEAR(run("cook-membrane", {membrane_mesh(n), degree + "2"}, column),
-                published,
-                0.0051)
-      << n << " elements of degree 2";
+    if (n <= 2 || !many_processes())
+      EXPECT_NEAR(run("cook-membrane",
+                      {membrane_mesh(n), degree + "2"},
+                      column),
+                  published,
+                  0.0051)
+        << n << " elements of degree 2";
 }
 
 
