@@ -727,7 +727,7 @@ TEST(RemodelledBone, CostOfEvaluate)
           randomize(point, 1e-3, fabric);
           const auto         f     = unit + random_velocity(dim, size);
           const auto         begin = std::chrono::steady_clock::now();
-          const unsigned int n     = 50000;
+          const unsigned int n     = 20000;
           double             sum   = 0.;
           for (unsigned int i = 0; i < n; ++i)
             sum += point.evaluate(f).stress[0][0];
