@@ -737,7 +737,9 @@ TEST(RemodelledBone, CostOfEvaluate)
                     << (size > 0.01 ? "plastic: " : "elastic: ")
                     << 1e6 * seconds.count() / n << " microseconds\n";
           EXPECT_TRUE(std::isfinite(sum));
-          EXPECT_LT(seconds.count() / n,
-                    1e-4); // an accidental allocation shows
+#ifdef NDEBUG
+          // deal.II's assertions cost a factor of 30
+          EXPECT_LT(seconds.count() / n, 1e-4);
+#endif
         }
 }
