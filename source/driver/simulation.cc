@@ -53,7 +53,7 @@ namespace alveolus
       }
     MPI_Barrier(communicator);
     mesh = scene.mesh_source->create(communicator,
-                                     scene.input_directory,
+                                     ".", // paths are resolved already
                                      scene.output_directory);
     build();
   }
