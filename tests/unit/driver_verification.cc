@@ -259,24 +259,30 @@ TEST(CookMembrane, PublishedTipDisplacements)
   const std::vector<std::pair<unsigned int, double>> linear = {
     {1, 5.15}, {2, 8.72}, {4, 12.02}, {8, 13.61}, {16, 14.13}};
   for (const auto &[n, published] : linear)
-    if (n <= 4 || !many_processes())
+    {
+      if (n > 4 && many_processes())
+        continue;
       EXPECT_NEAR(run("cook-membrane",
                       {membrane_mesh(n), degree + "1"},
                       column),
                   published,
                   0.0051)
         << n << " elements of degree 1";
+    }
   const std::vector<std::pair<unsigned int, double>> quadratic = {{1, 12.19},
                                                                   {2, 13.83},
                                                                   {4, 14.22}};
   for (const auto &[n, published] : quadratic)
-    if (n <= 2 || !many_processes())
+    {
+      if (n > 2 && many_processes())
+        continue;
       EXPECT_NEAR(run("cook-membrane",
                       {membrane_mesh(n), degree + "2"},
                       column),
                   published,
                   0.0051)
         << n << " elements of degree 2";
+    }
 }
 
 
