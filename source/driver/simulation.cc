@@ -162,7 +162,7 @@ namespace alveolus
       {
         while (state->time < scene.time.end * (1. - 1e-12))
           {
-            const double   stop = scene.field_interval > 0.
+            const double   stop = field_writer && scene.field_interval > 0.
                                     ? std::min(next_field_time, scene.time.end)
                                     : scene.time.end;
             const double   dt   = step_control.next(state->time, stop);

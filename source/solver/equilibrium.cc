@@ -120,6 +120,19 @@ namespace alveolus
 
 
   template <int dim>
+  double
+  Equilibrium<dim>::free_work(const NodalVector &u, const NodalVector &v) const
+  {
+    double sum = 0.;
+    for (const auto i : state.configuration.locally_owned)
+      if (!held.is_constrained(i))
+        sum += u(i) * v(i);
+    return Utilities::MPI::sum(sum, state.configuration.communicator());
+  }
+
+
+
+  template <int dim>
   AssemblyResult
   Equilibrium<dim>::assemble(const NodalVector &du,
                              const bool         matrix,
@@ -232,7 +245,10 @@ namespace alveolus
         // Backtracking: the full step is assembled with its matrix at once,
         // because it is nearly always taken. The first, inhomogeneous step
         // cannot be shortened (it would miss the prescribed values), only
-        // judged.
+        // judged. A step is good if the residual falls or its work along the
+        // step does: with a stiff bulk a good step raises the norm for an
+        // iteration, through volume changes of second order.
+        const double work     = free_work(correction, residual_vector);
         double       fraction = 1.;
         unsigned int halvings = 0;
         for (;; ++halvings)
@@ -248,6 +264,8 @@ namespace alveolus
                  free_norm(residual_vector) < (1. - 1e-4 * fraction) * norm ||
                  free_norm(residual_vector) <=
                    parameters.tolerance * result.force_scale ||
+                 std::abs(free_work(correction, residual_vector)) <
+                   0.5 * std::abs(work) ||
                  halvings == parameters.max_line_search))
               break;
             if (lift || halvings == parameters.max_line_search)

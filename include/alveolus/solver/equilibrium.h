@@ -89,6 +89,9 @@ namespace alveolus
     set_constraints(const Interval &interval);
     double
     free_norm(const NodalVector &v) const;
+    /** Scalar product over the unconstrained dofs. */
+    double
+    free_work(const NodalVector &u, const NodalVector &v) const;
     AssemblyResult
     assemble(const NodalVector &du, const bool matrix, const bool lift);
 
