@@ -44,8 +44,8 @@ namespace alveolus
           history.layout(history.region(cell)).offset("density");
         if (offset >= 0)
           for (unsigned int q = 0; q < history.n_points; ++q)
-            sum += (trial ? history.trial_record(cell, q) :
-                            history.old_record(cell, q))[offset] *
+            sum += (trial ? history.trial_record(cell, q)
+                          : history.old_record(cell, q))[offset] *
                    volume[cell * history.n_points + q];
       }
     return Utilities::MPI::sum(sum, state.configuration.communicator());

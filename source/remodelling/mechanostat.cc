@@ -91,7 +91,8 @@ namespace alveolus
     const double tr = trace(tau);
     if (pressure > 0.)
       return std::tanh(tr / (3. * pressure)) * energy;
-    return tr > 0. ? energy : (tr < 0. ? -energy : 0.);
+    // 0 * energy: not a number stays what it is
+    return tr > 0. ? energy : (tr < 0. ? -energy : 0. * energy);
   }
 
 

@@ -44,6 +44,26 @@ namespace alveolus
       return !name.empty();
     }
 
+    /**
+     * The value, or for file names (by their parameter's name) the path from
+     * here: in a file they are relative to the folder of that file.
+     */
+    std::string
+    resolved(const ParameterText::Entry &entry)
+    {
+      static const std::string ending = " file";
+      const bool               is_path =
+        entry.name == "File name" ||
+        (entry.name.size() > ending.size() &&
+         entry.name.compare(entry.name.size() - ending.size(),
+                            ending.size(),
+                            ending) == 0);
+      if (!is_path || entry.value.empty() || entry.value.front() == '/' ||
+          entry.directory.empty() || entry.directory == ".")
+        return entry.value;
+      return entry.directory + "/" + entry.value;
+    }
+
     bool
     starts_with_word(const std::string &line, const std::string &word)
     {
@@ -173,8 +193,9 @@ namespace alveolus
         else if (starts_with_word(line, "set"))
           {
             Entry entry;
-            entry.section = section;
-            entry.origin  = origin;
+            entry.section   = section;
+            entry.origin    = origin;
+            entry.directory = directory_of(name);
             if (!split_assignment(line.substr(3), entry.name, entry.value))
               {
                 problems.push_back(origin +
@@ -298,7 +319,7 @@ namespace alveolus
         // Only set() tells of undeclared entries in a release build.
         try
           {
-            prm.set(entry.name, entry.value);
+            prm.set(entry.name, resolved(entry));
           }
         catch (const ParameterHandler::ExcEntryUndeclared &)
           {

@@ -9,15 +9,14 @@ namespace alveolus
 
   template <int dim>
   Scene<dim>::Scene(const ParameterText &text)
-    : input_directory(directory_of(text.file_name))
-    , text(text)
+    : text(text)
   {
     declare();
     text.apply(prm);
 
     for (auto &law : interface_law_list)
       {
-        law.object->initialize(law.where, input_directory);
+        law.object->initialize(law.where);
         interface_laws[law.name] = std::move(law.object);
       }
     for (auto &law : remodelling_laws)

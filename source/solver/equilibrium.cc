@@ -37,6 +37,12 @@ namespace alveolus
       "step (extrapolated), or the solution of the linearised "
       "problem (linear).",
       Patterns::Selection("extrapolated|linear"));
+    prm.add_parameter("Report imbalance",
+                      report_imbalance,
+                      "Record how far the state before a step is from "
+                      "equilibrium, e.g. after a transfer (costs one assembly "
+                      "of forces).",
+                      Patterns::Bool());
     prm.add_parameter("Linear solver",
                       linear_solver,
                       "automatic is UMFPACK on one process, MUMPS on several; "
@@ -141,6 +147,18 @@ namespace alveolus
     const auto &owned = state.configuration.locally_owned;
     NodalVector correction(state.configuration.make_vector());
     NodalVector trial(state.configuration.make_vector());
+
+    if (parameters.report_imbalance)
+      {
+        // Without increment the residual is what the last step left, what
+        // transfers did to it, and the change of the loads.
+        correction.zero_out_ghost_values();
+        correction = 0.;
+        correction.update_ghost_values();
+        const AssemblyResult before = assemble(correction, false, false);
+        if (before.good && before.force_scale > 0.)
+          report.imbalance = free_norm(residual_vector) / before.force_scale;
+      }
 
     // The first guess. An extrapolation that folds the mesh is given up for
     // the linearised problem, which only needs the last state.

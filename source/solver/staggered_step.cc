@@ -109,17 +109,18 @@ namespace alveolus
       [&](const unsigned int begin, const unsigned int end) {
         for (unsigned int c = begin; c < end; ++c)
           {
-            const auto &region = laws[state.history.region(cells[c])];
+            const auto           &region = laws[state.history.region(cells[c])];
             const LocalIntegrator integrator(*region.law,
                                              *region.bone,
                                              parameters.local_tolerance);
             try
               {
                 for (unsigned int q = 0; q < n_points; ++q)
-                  reports[c * n_points + q] = integrator.advance(
-                    state.history.trial_record(cells[c], q),
-                    dt,
-                    filter ? &stimulus[c * n_points + q] : nullptr);
+                  reports[c * n_points + q] =
+                    integrator.advance(state.history.trial_record(cells[c], q),
+                                       dt,
+                                       filter ? &stimulus[c * n_points + q]
+                                              : nullptr);
               }
             catch (const RunError &error)
               {
@@ -128,11 +129,10 @@ namespace alveolus
           }
       },
       16);
+    RemodellingSummary summary;
     for (const auto &failure : failures)
       if (!failure.empty())
-        throw RunError("remodelling", failure, "");
-
-    RemodellingSummary summary;
+        summary.failure = failure;
     for (const auto &report : reports)
       {
         summary.largest_density_change =
@@ -145,6 +145,15 @@ namespace alveolus
     const MPI_Comm communicator = state.configuration.communicator();
     summary.largest_density_change =
       Utilities::MPI::max(summary.largest_density_change, communicator);
+    const unsigned int n = Utilities::MPI::n_mpi_processes(communicator);
+    const unsigned int first_failed =
+      Utilities::MPI::min(summary.failure.empty()
+                            ? n
+                            : Utilities::MPI::this_mpi_process(communicator),
+                          communicator);
+    if (first_failed < n)
+      summary.failure =
+        Utilities::MPI::broadcast(communicator, summary.failure, first_failed);
     summary.n_fabric_limited =
       Utilities::MPI::sum(summary.n_fabric_limited, communicator);
     summary.n_at_lower_bound =
@@ -167,12 +176,11 @@ namespace alveolus
     double             change  = 0.;
     for (const unsigned int cell : cells)
       {
-        const auto &layout  = history.layout(history.region(cell));
-        const int   density = layout.offset("density");
-        const int   fabric  = layout.offset("log fabric");
+        const auto        &layout  = history.layout(history.region(cell));
+        const int          density = layout.offset("density");
+        const int          fabric  = layout.offset("log fabric");
         const unsigned int n_fabric =
-          fabric < 0 ? 0 :
-                       n_values(HistoryField::Shape::symmetric_tensor, dim);
+          fabric < 0 ? 0 : n_values(HistoryField::Shape::symmetric_tensor, dim);
         for (unsigned int q = 0; q < history.n_points; ++q)
           {
             double       *old   = history.old_record(cell, q);
@@ -232,8 +240,8 @@ namespace alveolus
                   {
                     double       *trial = history.trial_record(cell, q);
                     const double *old   = history.old_record(cell, q);
-                    const double *first = committed.data() +
-                                          (old - history.old_values.data());
+                    const double *first =
+                      committed.data() + (old - history.old_values.data());
                     trial[density] = first[density];
                     // The fabric at t_n, turned as the equilibrium turned the
                     // one of the end of the step: to first order its increment.
@@ -242,18 +250,21 @@ namespace alveolus
                            i <
                            n_values(HistoryField::Shape::symmetric_tensor, dim);
                            ++i)
-                        trial[fabric + i] += first[fabric + i] - old[fabric + i];
+                        trial[fabric + i] +=
+                          first[fabric + i] - old[fabric + i];
                   }
               }
             remodelling = remodel(dt);
-          }
-        while (change > parameters.coupling_tolerance);
+        } while (remodelling.failure.empty() &&
+                 change > parameters.coupling_tolerance);
         history.old_values                = committed;
         remodelling.n_coupling_iterations = n;
         if (verdict.repeats())
           return verdict;
       }
 
+    if (!remodelling.failure.empty())
+      return {Verdict::Kind::repeat, remodelling.failure};
     if (remodelling.largest_density_change > parameters.max_density_change)
       {
         std::ostringstream reason;

@@ -30,10 +30,11 @@ namespace alveolus
                       cut_factor,
                       "A rejected step is repeated with this part of it.",
                       Patterns::Double(0.01, 0.99));
-    prm.add_parameter("Growth factor",
-                      growth_factor,
-                      "After an easy step the next one is longer by this factor.",
-                      Patterns::Double(1., 10.));
+    prm.add_parameter(
+      "Growth factor",
+      growth_factor,
+      "After an easy step the next one is longer by this factor.",
+      Patterns::Double(1., 10.));
     prm.add_parameter("Easy iterations",
                       easy_iterations,
                       "A step is easy if Newton took at most this many "
@@ -62,11 +63,11 @@ namespace alveolus
 
 
   void
-  StepControl::accepted(const double       attempted,
-                        const unsigned int n_iterations)
+  StepControl::accepted(const double attempted, const unsigned int n_iterations)
   {
     // An attempt shortened to hit an output time says nothing about dt.
-    if (attempted < dt * (1. - 1e-10) && n_iterations <= parameters.easy_iterations)
+    if (attempted < dt * (1. - 1e-10) &&
+        n_iterations <= parameters.easy_iterations)
       return;
     if (n_iterations <= parameters.easy_iterations)
       dt = std::min(dt * parameters.growth_factor, parameters.maximum_step);

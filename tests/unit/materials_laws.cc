@@ -727,7 +727,7 @@ TEST(RemodelledBone, CostOfEvaluate)
           randomize(point, 1e-3, fabric);
           const auto         f     = unit + random_velocity(dim, size);
           const auto         begin = std::chrono::steady_clock::now();
-          const unsigned int n     = 50000;
+          const unsigned int n     = 20000;
           double             sum   = 0.;
           for (unsigned int i = 0; i < n; ++i)
             sum += point.evaluate(f).stress[0][0];
@@ -737,7 +737,9 @@ TEST(RemodelledBone, CostOfEvaluate)
                     << (size > 0.01 ? "plastic: " : "elastic: ")
                     << 1e6 * seconds.count() / n << " microseconds\n";
           EXPECT_TRUE(std::isfinite(sum));
-          EXPECT_LT(seconds.count() / n,
-                    1e-4); // an accidental allocation shows
+#ifdef NDEBUG
+          // deal.II's assertions cost a factor of 30
+          EXPECT_LT(seconds.count() / n, 1e-4);
+#endif
         }
 }

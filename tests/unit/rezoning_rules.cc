@@ -73,7 +73,7 @@ namespace
       : mesh(std::move(m))
       , configuration(mesh, degree)
       , nodes(configuration)
-      , initial(configuration.initial_positions())
+      , initial(configuration.positions())
     {
       initial.update_ghost_values();
     }

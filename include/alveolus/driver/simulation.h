@@ -60,7 +60,7 @@ namespace alveolus
     {
       unsigned int steps = 0, rejected = 0, iterations = 0;
       unsigned int limited = 0, cut_back = 0, subcycles = 0;
-      unsigned int unconverged_rezonings = 0;
+      unsigned int unconverged_rezonings    = 0;
       unsigned int max_iterations_of_a_step = 0;
       double       smallest_quality         = 1.;
       double       largest_transfer_error   = 0.;
@@ -85,18 +85,18 @@ namespace alveolus
     void
     report_progress();
 
-    Scene<dim> &scene;
-    MPI_Comm    communicator;
-    Log        &log;
+    Scene<dim>         &scene;
+    MPI_Comm            communicator;
+    Log                &log;
     dealii::TimerOutput timer;
 
-    Mesh<dim>                             mesh;
-    std::unique_ptr<State<dim>>           state;
-    std::vector<Region>                   regions;
-    std::vector<RegionRemodelling>        remodelling;
+    Mesh<dim>                                    mesh;
+    std::unique_ptr<State<dim>>                  state;
+    std::vector<Region>                          regions;
+    std::vector<RegionRemodelling>               remodelling;
     typename MechanicsAssembler<dim>::Conditions conditions;
-    std::unique_ptr<Equilibrium<dim>>     equilibrium;
-    std::unique_ptr<StaggeredStep<dim>>   staggered_step;
+    std::unique_ptr<Equilibrium<dim>>            equilibrium;
+    std::unique_ptr<StaggeredStep<dim>>          staggered_step;
 
     // Present only where the scene rezones:
     std::unique_ptr<Rezoner<dim>>         rezoner;
@@ -106,7 +106,7 @@ namespace alveolus
     std::unique_ptr<TraceProjection<dim>> trace_projection;
     std::set<unsigned int>                projected_regions;
     // Present only where some region has a density:
-    std::unique_ptr<BoneMass<dim>>        bone_mass;
+    std::unique_ptr<BoneMass<dim>> bone_mass;
 
     std::unique_ptr<HistoryFile>      history_file;
     std::unique_ptr<FieldWriter<dim>> field_writer;

@@ -14,8 +14,9 @@ namespace alveolus
    * `include` (relative to the including file) resolved and every statement's
    * file and line remembered. Later statements override earlier ones, so a
    * variant is a file that includes its base and sets a few values; setting an
-   * entry twice in one file is refused. apply() hands the values to a
-   * ParameterHandler, which owns names, patterns and documentation.
+   * entry twice in one file is refused. A parameter called "File name" or "...
+   * file" is a path, relative to the file that sets it. apply() hands the
+   * values to a ParameterHandler, which owns names, patterns and documentation.
    */
   class ParameterText
   {
@@ -25,7 +26,8 @@ namespace alveolus
       std::vector<std::string> section; ///< path of subsections
       std::string              name;
       std::string              value;
-      std::string              origin; ///< "file:line" or "--set"
+      std::string              origin;    ///< "file:line" or "--set"
+      std::string              directory; ///< of that file, "" for "--set"
     };
 
     /**

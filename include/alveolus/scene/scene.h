@@ -55,14 +55,14 @@ namespace alveolus
     unsigned int degree = 1;
     std::string  mesh_type;
 
-    std::unique_ptr<MeshSource<dim>>         mesh_source;
-    std::vector<Region>                      regions;
-    std::vector<Named<Material>>             materials;
-    InterfaceLaws                            interface_laws;
-    std::vector<Named<RemodellingLaw>>       remodelling_laws;
-    std::vector<Named<Condition<dim>>>       conditions;
-    std::vector<Named<RezoningRule<dim>>>    rezoning_rules;
-    std::vector<Named<Recorder<dim>>>        recorders;
+    std::unique_ptr<MeshSource<dim>>      mesh_source;
+    std::vector<Region>                   regions;
+    std::vector<Named<Material>>          materials;
+    InterfaceLaws                         interface_laws;
+    std::vector<Named<RemodellingLaw>>    remodelling_laws;
+    std::vector<Named<Condition<dim>>>    conditions;
+    std::vector<Named<RezoningRule<dim>>> rezoning_rules;
+    std::vector<Named<Recorder<dim>>>     recorders;
 
     typename Equilibrium<dim>::Parameters   solver;
     typename StaggeredStep<dim>::Parameters coupling;
@@ -89,8 +89,6 @@ namespace alveolus
     /** The resolved parameters, with defaults, in the input format. */
     void
     write_resolved(std::ostream &out) const;
-
-    std::string input_directory; ///< folder of the parameter file
 
   private:
     void

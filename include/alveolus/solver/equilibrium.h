@@ -20,6 +20,8 @@ namespace alveolus
     unsigned int        n_line_search = 0; ///< halvings of the Newton step
     unsigned int        n_linear_iterations = 0;
     double              energy              = 0.; ///< stored [mJ (per mm)]
+    /** L1 norm of the residual before the step over the internal forces. */
+    double imbalance = 0.;
   };
 
   /**
@@ -39,6 +41,7 @@ namespace alveolus
       unsigned int max_iterations     = 15;
       unsigned int max_line_search    = 6;
       std::string  predictor          = "extrapolated";
+      bool         report_imbalance   = false;
       std::string  linear_solver      = "automatic";
       double       linear_tolerance   = 1e-10;
 

@@ -16,6 +16,7 @@ namespace alveolus
     unsigned int n_at_lower_bound       = 0;
     unsigned int n_at_upper_bound       = 0;
     unsigned int n_coupling_iterations  = 0;
+    std::string  failure; ///< why a point could not be integrated, if any
   };
 
   /** The remodelling of one region: null pointers where there is none. */
@@ -38,12 +39,12 @@ namespace alveolus
   public:
     struct Parameters
     {
-      std::string  coupling               = "staggered";
-      double       coupling_tolerance     = 1e-4;
+      std::string  coupling                = "staggered";
+      double       coupling_tolerance      = 1e-4;
       unsigned int max_coupling_iterations = 20;
-      double       local_tolerance        = 1e-6;
-      double       max_density_change     = 0.1;
-      double       filter_length          = 0.;
+      double       local_tolerance         = 1e-6;
+      double       max_density_change      = 0.1;
+      double       filter_length           = 0.;
 
       void
       declare(dealii::ParameterHandler &prm);
@@ -72,14 +73,14 @@ namespace alveolus
     double
     feed_back();
 
-    State<dim>                            &state;
-    Equilibrium<dim>                      &equilibrium;
-    const std::vector<RegionRemodelling>  &laws;
-    const Parameters                      &parameters;
-    dealii::TimerOutput                   &timer;
-    bool                                   active = false;
-    std::vector<unsigned int>              cells; ///< owned, remodelled
-    std::unique_ptr<HelmholtzFilter<dim>>  filter;
+    State<dim>                           &state;
+    Equilibrium<dim>                     &equilibrium;
+    const std::vector<RegionRemodelling> &laws;
+    const Parameters                     &parameters;
+    dealii::TimerOutput                  &timer;
+    bool                                  active = false;
+    std::vector<unsigned int>             cells; ///< owned, remodelled
+    std::unique_ptr<HelmholtzFilter<dim>> filter;
   };
 } // namespace alveolus
 
