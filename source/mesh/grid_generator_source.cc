@@ -2,6 +2,7 @@
 #include <alveolus/base/errors.h>
 #include <alveolus/mesh/mesh_source.h>
 
+#include <deal.II/base/function_parser.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold.h>
@@ -95,7 +96,10 @@ namespace alveolus
 
 
 
-  /** Meshes of deal.II's namespace GridGenerator, by function name. */
+  /**
+   * Meshes of deal.II's namespace GridGenerator, by function name, optionally
+   * with their vertices moved and boundaries cut into named pieces.
+   */
   template <int dim>
   class GridGeneratorSource : public MeshSource<dim>
   {
@@ -113,6 +117,12 @@ namespace alveolus
                         "colons, lengths in mm, e.g. '0 : 1 : true'. Many "
                         "functions end with 'colorize' (true or false), which "
                         "gives the sides boundary ids of their own.");
+      prm.add_parameter("Map",
+                        map,
+                        "Where the vertices of the coarse mesh are moved to "
+                        "[mm], an expression in x, y(, z) for each component, "
+                        "separated by semicolons, e.g. 'x; y*(1+x/10)'; only "
+                        "for meshes without curved manifolds.");
       prm.add_parameter("Refinements",
                         n_refinements,
                         "How often every cell is divided.",
@@ -123,6 +133,12 @@ namespace alveolus
                         "name may be given several ids by repeating it. Others "
                         "are called 'boundary 0' and so on. In 2D curves have "
                         "the same names.");
+      prm.add_parameter("Boundary pieces",
+                        boundary_pieces,
+                        "Names of parts cut out of the boundaries, each with a "
+                        "condition in x, y(, z) [mm] that the middles of its "
+                        "faces in the coarse mesh fulfil, separated by "
+                        "semicolons, e.g. 'punch: y > 9.99 && x < 2'.");
       prm.add_parameter("Region names",
                         region_names,
                         "Names of material ids, e.g. 'body: 0'; others are "
@@ -143,6 +159,7 @@ namespace alveolus
         std::make_unique<dealii::parallel::distributed::Triangulation<dim>>(
           communicator);
       generate(*mesh.triangulation);
+      map_vertices(*mesh.triangulation);
 
       // Every process has all coarse cells, so every one sees all ids.
       std::set<unsigned int> boundary_ids, material_ids;
@@ -157,7 +174,8 @@ namespace alveolus
                                        boundary_ids,
                                        "boundary",
                                        section + " / Boundary names");
-      mesh.names.regions    = name_ids(region_names,
+      cut_pieces(mesh, boundary_ids);
+      mesh.names.regions = name_ids(region_names,
                                     material_ids,
                                     "region",
                                     section + " / Region names");
@@ -176,7 +194,7 @@ namespace alveolus
     std::string  function      = "hyper_cube";
     std::string  arguments     = "0 : 1 : true";
     unsigned int n_refinements = 0;
-    std::string  boundary_names, region_names, point_names;
+    std::string map, boundary_names, boundary_pieces, region_names, point_names;
 
     void
     generate(dealii::Triangulation<dim> &triangulation) const
@@ -199,6 +217,90 @@ namespace alveolus
         throw InputError(section + " / Function",
                          "'" + function + "' makes a refined mesh",
                          "take a function that makes coarse cells only");
+    }
+
+    /** Expressions of the place as a function. */
+    std::unique_ptr<dealii::FunctionParser<dim>>
+    parse(const std::vector<std::string> &expressions,
+          const std::string              &where) const
+    {
+      auto f =
+        std::make_unique<dealii::FunctionParser<dim>>(expressions.size());
+      try
+        {
+          f->initialize(dim == 2 ? "x,y" : "x,y,z",
+                        expressions,
+                        {{"pi", dealii::numbers::PI}});
+          f->value(dealii::Point<dim>(), 0);
+        }
+      catch (const std::exception &error)
+        {
+          throw InputError(where,
+                           "cannot be evaluated: " + reason(error),
+                           std::string("use expressions in ") +
+                             (dim == 2 ? "x, y" : "x, y, z"));
+        }
+      return f;
+    }
+
+    void
+    map_vertices(dealii::Triangulation<dim> &triangulation) const
+    {
+      if (map.empty())
+        return;
+      const std::string where = section + " / Map";
+      const auto        list  = dealii::Utilities::split_string_list(map, ';');
+      if (list.size() != dim)
+        throw InputError(where,
+                         "'" + map + "' has " + std::to_string(list.size()) +
+                           " expressions",
+                         std::to_string(dim) +
+                           " are needed, separated by semicolons");
+      for (const auto id : triangulation.get_manifold_ids())
+        if (id != dealii::numbers::flat_manifold_id)
+          throw InputError(where,
+                           "'" + function + "' has curved manifolds",
+                           "map meshes with straight edges only");
+      const auto f = parse(list, where);
+      dealii::GridTools::transform(
+        [&](const dealii::Point<dim> &x) {
+          dealii::Point<dim> y;
+          for (unsigned int d = 0; d < dim; ++d)
+            y[d] = f->value(x, d);
+          return y;
+        },
+        triangulation);
+    }
+
+    /** Give the faces of each boundary piece an id of its own. */
+    void
+    cut_pieces(Mesh<dim> &mesh, const std::set<unsigned int> &ids) const
+    {
+      const std::string where = section + " / Boundary pieces";
+      unsigned int      id    = *ids.rbegin();
+      for (const auto &[name, condition] :
+           named_values(boundary_pieces, ';', where))
+        {
+          ++id;
+          const auto f       = parse({condition}, where);
+          bool       is_used = false;
+          for (const auto &cell :
+               mesh.triangulation->cell_iterators_on_level(0))
+            for (const auto &face : cell->face_iterators())
+              if (face->at_boundary() && f->value(face->center()) != 0.)
+                {
+                  face->set_boundary_id(id);
+                  is_used = true;
+                }
+          if (!is_used)
+            throw InputError(where,
+                             "no face of the coarse mesh has its middle where "
+                             "'" +
+                               condition + "' is true",
+                             "correct the condition of '" + name +
+                               "', or divide the coarse mesh accordingly");
+          mesh.names.boundaries[name].insert(id);
+        }
     }
 
     /**
@@ -297,5 +399,5 @@ ALVEOLUS_REGISTER_DIM(
   alveolus::GridGeneratorSource,
   "grid generator",
   "A mesh of deal.II's namespace GridGenerator, by the name of the function and "
-  "its arguments; names are given to its boundary ids, material ids and "
-  "vertices.")
+  "its arguments, its vertices mapped if asked for; names are given to its "
+  "boundary ids, to pieces of boundaries, material ids and vertices.")
