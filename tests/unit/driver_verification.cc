@@ -239,6 +239,29 @@ TEST(ThickCylinder, RezoningChangesNothingExact)
 
 
 
+// An elastic body does not remember how it was loaded: with full integration
+// the result does not depend on the steps; mean dilatation averages over the
+// cells of x_n, where it does, by less than the error of the mesh.
+TEST(ThickCylinder, StepsOfAnElasticBodyDoNotMatter)
+{
+  const std::string column = "A: displacement x [mm]";
+  const auto        change = [&](const std::string &treatment) {
+    std::vector<double> u;
+    for (const std::string step : {"0.1", "0.05"})
+      u.push_back(run("thick-cylinder-rezoned",
+                      {"Rezoning/Names=",
+                       "Regions/wall/Volumetric treatment=" + treatment,
+                       "Time/Initial step=" + step,
+                       "Time/Maximum step=" + step},
+                      column));
+    return std::abs(u[0] - u[1]);
+  };
+  EXPECT_LT(change("none"), 1e-8);
+  EXPECT_LT(change("mean dilatation"), 3e-4); // error of the mesh: 3e-3
+}
+
+
+
 namespace
 {
   std::string
@@ -259,24 +282,30 @@ TEST(CookMembrane, PublishedTipDisplacements)
   const std::vector<std::pair<unsigned int, double>> linear = {
     {1, 5.15}, {2, 8.72}, {4, 12.02}, {8, 13.61}, {16, 14.13}};
   for (const auto &[n, published] : linear)
-    if (n <= 4 || !many_processes())
+    {
+      if (n > 4 && many_processes())
+        continue;
       EXPECT_NEAR(run("cook-membrane",
                       {membrane_mesh(n), degree + "1"},
                       column),
                   published,
                   0.0051)
         << n << " elements of degree 1";
+    }
   const std::vector<std::pair<unsigned int, double>> quadratic = {{1, 12.19},
                                                                   {2, 13.83},
                                                                   {4, 14.22}};
   for (const auto &[n, published] : quadratic)
-    if (n <= 2 || !many_processes())
+    {
+      if (n > 2 && many_processes())
+        continue;
       EXPECT_NEAR(run("cook-membrane",
                       {membrane_mesh(n), degree + "2"},
                       column),
                   published,
                   0.0051)
         << n << " elements of degree 2";
+    }
 }
 
 
