@@ -487,6 +487,7 @@ def main(arguments):
         print("usage: render.py NAME OUTPUT_ROOT", file=sys.stderr)
         return 2
     name, root = arguments
+    vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_WARNING)
     try:
         os.makedirs(os.path.join(root, "figures"), exist_ok=True)
         if name == "academic":

@@ -24,7 +24,7 @@ namespace
   int
   simulate(const ParameterText &text, const Options &options)
   {
-    Log log(Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0,
+    Log        log(Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0,
             options.quiet);
     Scene<dim> scene(text);
     if (!options.output.empty())
@@ -92,10 +92,12 @@ main(int argc, char **argv)
     }
 
   deal_II_exceptions::suppress_stacktrace_in_exceptions();
-  Utilities::MPI::MPI_InitFinalize mpi(
-    argc,
-    argv,
-    options.threads > 0 ? options.threads : numbers::invalid_unsigned_int);
+  int program_name_only = 1; // PETSc would take the options for its own
+  Utilities::MPI::MPI_InitFinalize mpi(program_name_only,
+                                       argv,
+                                       options.threads > 0
+                                         ? options.threads
+                                         : numbers::invalid_unsigned_int);
   const bool speaks = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   try
     {

@@ -29,7 +29,10 @@ namespace alveolus
       if (found.second)
         {
           fields.emplace_back(name, Vector<float>(n_cells));
-          fields.back().second = std::numeric_limits<float>::quiet_NaN();
+          // operator= asserts finite values
+          std::fill(fields.back().second.begin(),
+                    fields.back().second.end(),
+                    std::numeric_limits<float>::quiet_NaN());
         }
       return found.first->second;
     };
@@ -89,10 +92,10 @@ namespace alveolus
   FieldWriter<dim>::write(const State<dim>          &state,
                           const std::vector<Region> &regions)
   {
-    const auto &configuration = state.configuration;
+    const auto           &configuration = state.configuration;
     DataOut<dim>          data_out;
     DataOutBase::VtkFlags flags;
-    flags.time               = state.time;
+    flags.time                     = state.time;
     flags.write_higher_order_cells = configuration.degree > 1;
     data_out.set_flags(flags);
 
@@ -103,7 +106,7 @@ namespace alveolus
       std::vector<DataComponentInterpretation::DataComponentInterpretation>(
         dim, DataComponentInterpretation::component_is_part_of_vector));
 
-    auto fields = cell_fields(state, regions);
+    auto               fields = cell_fields(state, regions);
     const unsigned int n_cells =
       configuration.mesh.triangulation->n_active_cells();
     Vector<float> quality(n_cells), region(n_cells);
@@ -129,11 +132,11 @@ namespace alveolus
                   sizeof(number),
                   "%05u",
                   static_cast<unsigned int>(times.size()));
-    const std::string base         = std::string("fields-") + number;
-    const MPI_Comm    communicator = configuration.communicator();
-    const unsigned int me          = Utilities::MPI::this_mpi_process(communicator);
-    const unsigned int n           = Utilities::MPI::n_mpi_processes(communicator);
-    const auto piece = [&](const unsigned int rank) {
+    const std::string  base         = std::string("fields-") + number;
+    const MPI_Comm     communicator = configuration.communicator();
+    const unsigned int me    = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int n     = Utilities::MPI::n_mpi_processes(communicator);
+    const auto         piece = [&](const unsigned int rank) {
       return base + (n > 1 ? "." + std::to_string(rank) : "") + ".vtu";
     };
     bool written = true;

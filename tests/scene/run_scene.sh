@@ -20,6 +20,7 @@
 #   require: COLUMN >= VALUE, ...
 #                            must hold in every row: < <= > >=, |COLUMN| is the
 #                            absolute value; repeatable
+#   reference: exact         NAME.output is a formula's, never written anew
 #   output: FOLDER           output folder instead of one in the build folder
 #   arguments: ...           further arguments of the program
 #   mpirun: 2                adds a run on two processes   (read by CMake)
@@ -50,7 +51,7 @@ value() # KEY DEFAULT
 }
 
 unknown=$(sed -nE 's/^# ([a-z ]+): .*/\1/p' "$scene" | grep -vxE \
-  'exit|message|compare|rows|(parallel )?tolerance|require|output|arguments|mpirun|label|timeout' || true)
+  'exit|message|compare|rows|(parallel )?tolerance|require|reference|output|arguments|mpirun|label|timeout' || true)
 [[ -z $unknown ]] || fail "$scene: unknown key '$unknown:' in a comment"
 
 rm -rf "$work"
@@ -168,7 +169,8 @@ awk -F, -v columns="$columns" -v rows="$(value rows last)" '
   }' "$history" >"$work/compared" || fail "the columns cannot be compared"
 
 reference=${scene%.prm}.output
-if [[ ${ALVEOLUS_UPDATE-} == 1 && ${#launcher[@]} == 0 ]]; then
+if [[ ${ALVEOLUS_UPDATE-} == 1 && ${#launcher[@]} == 0 &&
+  $(value reference result) != exact ]]; then
   cp "$work/compared" "$reference"
   echo "written: $reference"
   exit 0
