@@ -76,15 +76,17 @@ namespace alveolus
                       parameters.on,
                       "Boundaries that the body carries along.",
                       Patterns::Anything());
-    prm.add_parameter("Motion",
-                      parameters.motion,
-                      "Translation of the body [mm], an expression in t [T] for "
-                      "each component, separated by semicolons.",
-                      Patterns::Anything());
-    prm.add_parameter("Rotation",
-                      parameters.rotation,
-                      "Rotation about the centre [degrees], an expression in t.",
-                      Patterns::Anything());
+    prm.add_parameter(
+      "Motion",
+      parameters.motion,
+      "Translation of the body [mm], an expression in t [T] for "
+      "each component, separated by semicolons.",
+      Patterns::Anything());
+    prm.add_parameter(
+      "Rotation",
+      parameters.rotation,
+      "Rotation about the centre [degrees], an expression in t.",
+      Patterns::Anything());
     prm.add_parameter("Centre",
                       parameters.centre,
                       "Centre of the rotation and of the moment [mm].",
@@ -125,9 +127,9 @@ namespace alveolus
   void
   RigidBody<dim>::attach(const State<dim> &state, const std::string &path)
   {
-    this->where = path;
+    this->where               = path;
     const auto &configuration = state.configuration;
-    ids    = boundary_ids(configuration.mesh.names, parameters.on, path + " / On");
+    ids = boundary_ids(configuration.mesh.names, parameters.on, path + " / On");
     motion = function_of_time(parameters.motion, dim, path + " / Motion");
     angle  = function_of_time(parameters.rotation, 1, path + " / Rotation");
     centre = parse_vector(parameters.centre, path + " / Centre");
@@ -141,11 +143,12 @@ namespace alveolus
       for (const NodeId node : state.nodes.boundary(name, path + " / On"))
         nodes.push_back(node);
     if (law != nullptr)
-      jumps = std::make_unique<FaceHistory<dim>>(
-        *configuration.mesh.triangulation,
-        ids,
-        Utilities::fixed_power<dim - 1>(configuration.degree + 1),
-        dim);
+      jumps =
+        std::make_unique<FaceHistory<dim>>(*configuration.mesh.triangulation,
+                                           ids,
+                                           Utilities::fixed_power<dim - 1>(
+                                             configuration.degree + 1),
+                                           dim);
   }
 
 
@@ -342,8 +345,8 @@ namespace alveolus
     Tensor<1, 3> f = force, m = moment;
     if (law == nullptr)
       {
-        f = 0;
-        m = 0;
+        f                           = 0;
+        m                           = 0;
         const NodalVector positions = state.configuration.positions();
         for (const NodeId node : nodes)
           if (state.nodes.is_owned(node))

@@ -16,10 +16,8 @@ namespace alveolus
     std::vector<unsigned int>
     chosen_components(const std::string &list, const std::string &where)
     {
-      return parse_components(list == "all" ? (dim == 2 ? "x, y" : "x, y, z") :
-                                              list,
-                              dim,
-                              where);
+      return parse_components(
+        list == "all" ? (dim == 2 ? "x, y" : "x, y, z") : list, dim, where);
     }
   } // namespace
 
@@ -52,7 +50,7 @@ namespace alveolus
   PointDisplacement<dim>::record(const State<dim> &state,
                                  const NodalVector &) const
   {
-    const Point<dim> u = state.nodes.gather(state.displacement, {node})[0];
+    const Point<dim>      u = state.nodes.gather(state.displacement, {node})[0];
     std::vector<Recorded> row;
     for (const unsigned int c : components)
       row.emplace_back(std::string("displacement ") + axis_names[c] + " [mm]",
@@ -100,9 +98,9 @@ namespace alveolus
         for (const NodeId node : nodes)
           if (state.nodes.is_owned(node))
             sum += reactions(state.nodes.dofs(node)[c]);
-        row.emplace_back(std::string("force ") + axis_names[c] + " [N]",
-                         Utilities::MPI::sum(
-                           sum, state.configuration.communicator()));
+        row.emplace_back(
+          std::string("force ") + axis_names[c] + " [N]",
+          Utilities::MPI::sum(sum, state.configuration.communicator()));
       }
     return row;
   }
@@ -136,16 +134,15 @@ namespace alveolus
           }
     throw InputError(where + " / Field",
                      "no region has a scalar history field '" + field + "'",
-                     known.empty() ? "this scene has none" :
-                                     "this scene has " + known);
+                     known.empty() ? "this scene has none"
+                                   : "this scene has " + known);
   }
 
 
 
   template <int dim>
   std::vector<Recorded>
-  FieldExtremes<dim>::record(const State<dim> &state,
-                             const NodalVector &) const
+  FieldExtremes<dim>::record(const State<dim> &state, const NodalVector &) const
   {
     double least = std::numeric_limits<double>::max(), greatest = -least;
     for (const auto &cell :

@@ -699,7 +699,8 @@ TEST(Rezoner, NeverReturnsAnInvertedMesh)
         ++n_valid;
         Rezoning<2> run(bench);
         run.add("Giuliani",
-                {{"On", "all"}, {"Shapes", seed % 2 == 0 ? "initial" : "equal"}});
+                {{"On", "all"},
+                 {"Shapes", seed % 2 == 0 ? "initial" : "equal"}});
         const auto x     = run(bench.initial, bench.initial, lagrangian);
         const auto after = mesh_quality(bench.configuration, x);
         EXPECT_GT(after.smallest_scaled_jacobian, 0.);

@@ -4,8 +4,8 @@
 
 #include <alveolus/algebra/linear_system.h>
 #include <alveolus/base/registry.h>
-#include <alveolus/mesh/nodes.h>
 #include <alveolus/materials/interface_law.h>
+#include <alveolus/mesh/nodes.h>
 #include <alveolus/state/face_history.h>
 #include <alveolus/state/state.h>
 
@@ -70,8 +70,7 @@ namespace alveolus
   };
 
   /** The scene's interface laws by name. */
-  using InterfaceLaws =
-    std::map<std::string, std::unique_ptr<InterfaceLaw>>;
+  using InterfaceLaws = std::map<std::string, std::unique_ptr<InterfaceLaw>>;
 
   /** A named number for the history file. */
   using Recorded = std::pair<std::string, double>;
@@ -128,7 +127,8 @@ namespace alveolus
     commit()
     {}
 
-    /** History on the condition's boundary, to be moved by rezoning; or null. */
+    /** History on the condition's boundary, to be moved by rezoning; or null.
+     */
     virtual FaceHistory<dim> *
     face_history()
     {

@@ -94,15 +94,15 @@ namespace alveolus
     dealii::Tensor<1, 3>
     carried(const dealii::Point<dim> &x, const Interval &interval) const;
 
-    std::set<dealii::types::boundary_id>        ids;
-    std::vector<NodeId>                         nodes; ///< tied ones
+    std::set<dealii::types::boundary_id>       ids;
+    std::vector<NodeId>                        nodes; ///< tied ones
     std::unique_ptr<dealii::FunctionParser<1>> motion, angle;
-    dealii::Tensor<1, 3>                        centre, axis;
-    const InterfaceLaw                         *law = nullptr;
-    std::unique_ptr<FaceHistory<dim>>           jumps;
-    std::vector<LoadedFace>                     faces;
-    Interval                                    step;
-    dealii::Tensor<1, 3>                        force, moment; ///< last assembly
+    dealii::Tensor<1, 3>                       centre, axis;
+    const InterfaceLaw                        *law = nullptr;
+    std::unique_ptr<FaceHistory<dim>>          jumps;
+    std::vector<LoadedFace>                    faces;
+    Interval                                   step;
+    dealii::Tensor<1, 3>                       force, moment; ///< last assembly
     double smallest_strain = 0., largest_strain = 0., largest_shear = 0.;
   };
 } // namespace alveolus

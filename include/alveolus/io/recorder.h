@@ -70,12 +70,13 @@ namespace alveolus
            const NodalVector &reactions) const override;
 
   private:
-    std::string         on, component_list = "all";
+    std::string               on, component_list = "all";
     std::vector<unsigned int> components;
-    std::vector<NodeId> nodes;
+    std::vector<NodeId>       nodes;
   };
 
-  /** Mean, least and greatest value of a scalar history field in its regions. */
+  /** Mean, least and greatest value of a scalar history field in its regions.
+   */
   template <int dim>
   class FieldExtremes : public Recorder<dim>
   {
