@@ -3,6 +3,7 @@
 #include <alveolus/driver/messages.h>
 #include <alveolus/driver/simulation.h>
 
+#include <deal.II/base/multithread_info.h>
 #include <deal.II/base/revision.h>
 
 #include <nlohmann/json.hpp>
