@@ -37,8 +37,9 @@ namespace alveolus
   {
   public:
     /**
-     * @param scene  must outlive this object
-     * @param validate make mesh and all objects and say what is modelled only
+     * Make output folder, mesh and all objects; solve nothing. @p scene must
+     * outlive this object; its conditions and rules move here.
+     * @throws InputError
      */
     Simulation(Scene<dim> &scene, const MPI_Comm &communicator, Log &log);
 
