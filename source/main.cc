@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/base/interrupt.h>
 #include <alveolus/driver/simulation.h>
+#include <alveolus/io/checkpoint.h>
+#include <alveolus/scene/settings.h>
 
 #include <boost/program_options.hpp>
 
+#include <filesystem>
 #include <iostream>
 
 namespace
@@ -12,24 +16,49 @@ namespace
 
   struct Options
   {
-    std::string              scene, output;
+    std::string              scene, output, resume;
     std::vector<std::string> sets;
-    bool                     validate = false, quiet = false;
+    bool                     validate = false, quiet = false, accept = false;
     unsigned int             threads = 0;
   };
 
 
 
+  /** The output folder that a checkpoint lies in. */
+  std::string
+  folder_of(const std::string &checkpoint)
+  {
+    const auto folder =
+      std::filesystem::path(checkpoint).parent_path().parent_path().string();
+    return folder.empty() ? "." : folder;
+  }
+
+
+
   template <int dim>
   int
-  simulate(const ParameterText &text, const Options &options)
+  simulate(const ParameterText              &text,
+           const Options                    &options,
+           std::shared_ptr<const BlockFile> &resumed)
   {
     Log        log(Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0,
             options.quiet);
-    Scene<dim> scene(text);
+    const auto scene = std::make_shared<Scene<dim>>(text);
     if (!options.output.empty())
-      scene.output_directory = options.output;
-    Simulation<dim> simulation(scene, MPI_COMM_WORLD, log);
+      scene->output_directory = options.output;
+    else if (resumed)
+      scene->output_directory = folder_of(resumed->source);
+    std::vector<std::string> changes;
+    if (resumed)
+      {
+        std::ostringstream resolved;
+        scene->write_resolved(resolved);
+        changes = check_settings(*resumed, resolved.str(), options.accept);
+      }
+    // It lets go of the checkpoint when it has begun.
+    Simulation<dim> simulation(scene, MPI_COMM_WORLD, log, std::move(resumed));
+    for (const auto &change : changes)
+      log.say("changed: " + change);
     if (options.validate)
       {
         simulation.describe();
@@ -50,6 +79,13 @@ main(int argc, char **argv)
     po::value(&options.sets),
     "'Section/Subsection/Parameter=value', overrides the file (repeatable)")(
     "output", po::value(&options.output), "output folder")(
+    "resume",
+    po::value(&options.resume),
+    "go on from the newest checkpoint of this output folder, or from this "
+    "checkpoint file; the scene need not be given")(
+    "accept-changes",
+    po::bool_switch(&options.accept),
+    "resume although settings have changed")(
     "validate",
     po::bool_switch(&options.validate),
     "parse, mesh, check, say what is modelled and what not; solve nothing")(
@@ -99,6 +135,7 @@ main(int argc, char **argv)
                                          ? options.threads
                                          : numbers::invalid_unsigned_int);
   const bool speaks = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  Interrupt::install();
   try
     {
       if (given.count("print-parameters") > 0 && options.scene.empty())
@@ -107,12 +144,18 @@ main(int argc, char **argv)
             write_reference(std::cout);
           return 0;
         }
-      if (options.scene.empty())
+      std::shared_ptr<const BlockFile> resumed;
+      if (!options.resume.empty())
+        resumed = std::make_shared<const BlockFile>(
+          read_checkpoint(options.resume, MPI_COMM_WORLD));
+      if (options.scene.empty() && !resumed)
         throw InputError("usage",
                          "no parameter file given",
                          "write alveolus SCENE.prm, or see alveolus --help");
       const ParameterText text =
-        ParameterText::read(options.scene, options.sets);
+        options.scene.empty()
+          ? saved_settings(*resumed, options.sets)
+          : ParameterText::read(options.scene, options.sets);
       const bool three = text.value("Dimension", "2") == "3";
       if (given.count("print-parameters") > 0)
         {
@@ -122,7 +165,8 @@ main(int argc, char **argv)
             Scene<2>(text).write_resolved(std::cout);
           return 0;
         }
-      return three ? simulate<3>(text, options) : simulate<2>(text, options);
+      return three ? simulate<3>(text, options, resumed)
+                   : simulate<2>(text, options, resumed);
     }
   catch (const InputError &error)
     {

@@ -11,7 +11,8 @@ violations()
   awk '
     BEGIN {
       n = split("base algebra geometry mesh materials remodelling state " \
-                "assembly solver rezoning transfer io scene driver", floors)
+                "assembly solver rezoning transfer remeshing io scene driver", \
+                floors)
       for (i = 1; i <= n; ++i)
         level[floors[i]] = i
       # What may not be included although it is lower
@@ -20,6 +21,8 @@ violations()
       forbid("remodelling", "algebra geometry mesh")
       forbid("rezoning", "materials remodelling assembly solver")
       forbid("transfer", "materials remodelling assembly solver rezoning")
+      forbid("remeshing",
+             "materials remodelling assembly solver rezoning transfer")
     }
     function forbid(floor, list,   names, i, m) {
       m = split(list, names, " ")

@@ -23,13 +23,18 @@ namespace alveolus
     DynamicSparsityPattern
     make_pattern(const DoFHandler<dim>           &dof_handler,
                  const AffineConstraints<double> &constraints,
-                 const IndexSet                  &relevant)
+                 const IndexSet                  &relevant,
+                 const DofGroups                 &couplings)
     {
       DynamicSparsityPattern pattern(relevant);
       DoFTools::make_sparsity_pattern(dof_handler,
                                       pattern,
                                       constraints,
                                       /*keep constrained*/ false);
+      for (const auto &group : couplings)
+        constraints.add_entries_local_to_global(group,
+                                                pattern,
+                                                /*keep constrained*/ false);
       return pattern;
     }
 
@@ -41,12 +46,14 @@ namespace alveolus
     public:
       template <int dim>
       SerialSystem(const DoFHandler<dim>           &dof_handler,
-                   const AffineConstraints<double> &constraints)
+                   const AffineConstraints<double> &constraints,
+                   const DofGroups                 &couplings)
         : constraints(constraints)
       {
         IndexSet all(dof_handler.n_dofs());
         all.add_range(0, dof_handler.n_dofs());
-        pattern.copy_from(make_pattern(dof_handler, constraints, all));
+        pattern.copy_from(
+          make_pattern(dof_handler, constraints, all, couplings));
         matrix.reinit(pattern);
         right_hand_side.reinit(dof_handler.n_dofs());
         solution.reinit(dof_handler.n_dofs());
@@ -108,7 +115,8 @@ namespace alveolus
       DistributedSystem(const DoFHandler<dim>           &dof_handler,
                         const AffineConstraints<double> &constraints,
                         const bool                       multigrid,
-                        const double                     tolerance)
+                        const double                     tolerance,
+                        const DofGroups                 &couplings)
         : constraints(constraints)
         , multigrid(multigrid)
         , tolerance(tolerance)
@@ -118,7 +126,7 @@ namespace alveolus
         IndexSet relevant;
         DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
         DynamicSparsityPattern pattern =
-          make_pattern(dof_handler, constraints, relevant);
+          make_pattern(dof_handler, constraints, relevant, couplings);
         SparsityTools::distribute_sparsity_pattern(pattern,
                                                    owned,
                                                    communicator,
@@ -242,7 +250,8 @@ namespace alveolus
   make_linear_system(const DoFHandler<dim>           &dof_handler,
                      const AffineConstraints<double> &constraints,
                      const std::string               &type,
-                     const double                     tolerance)
+                     const double                     tolerance,
+                     const DofGroups                 &couplings)
   {
     const bool serial =
       Utilities::MPI::n_mpi_processes(dof_handler.get_communicator()) == 1;
@@ -251,21 +260,23 @@ namespace alveolus
                        "UMFPACK works on one process only",
                        "use MUMPS, multigrid or automatic");
     if (type == "UMFPACK" || (type == "automatic" && serial))
-      return std::make_unique<SerialSystem>(dof_handler, constraints);
-    return std::make_unique<DistributedSystem>(dof_handler,
-                                               constraints,
-                                               type == "multigrid",
-                                               tolerance);
+      return std::make_unique<SerialSystem>(dof_handler,
+                                            constraints,
+                                            couplings);
+    return std::make_unique<DistributedSystem>(
+      dof_handler, constraints, type == "multigrid", tolerance, couplings);
   }
 
   template std::unique_ptr<LinearSystem>
   make_linear_system(const DoFHandler<2> &,
                      const AffineConstraints<double> &,
                      const std::string &,
-                     const double);
+                     const double,
+                     const DofGroups &);
   template std::unique_ptr<LinearSystem>
   make_linear_system(const DoFHandler<3> &,
                      const AffineConstraints<double> &,
                      const std::string &,
-                     const double);
+                     const double,
+                     const DofGroups &);
 } // namespace alveolus

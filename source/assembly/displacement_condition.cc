@@ -39,43 +39,6 @@ namespace alveolus
 
 
   template <int dim>
-  std::unique_ptr<FunctionParser<dim>>
-  parse_function(const std::string &expressions,
-                 const unsigned int n_components,
-                 const std::string &where)
-  {
-    const auto list = Utilities::split_string_list(expressions, ';');
-    if (list.size() != n_components)
-      throw InputError(where,
-                       "'" + expressions + "' has " +
-                         std::to_string(list.size()) + " expressions",
-                       std::to_string(n_components) +
-                         " are needed, separated by semicolons");
-    auto function = std::make_unique<FunctionParser<dim>>(n_components);
-    try
-      {
-        function->initialize(dim == 2 ? "x,y,t" : "x,y,z,t",
-                             list,
-                             {{"pi", numbers::PI}},
-                             true);
-        function->value(Point<dim>(), 0);
-      }
-    catch (const ExceptionBase &error)
-      {
-        std::ostringstream message;
-        error.print_info(message);
-        throw InputError(where,
-                         "'" + expressions + "' cannot be evaluated (" +
-                           Utilities::trim(message.str()) + ")",
-                         "use expressions in x, y" +
-                           std::string(dim == 3 ? ", z" : "") + " and t");
-      }
-    return function;
-  }
-
-
-
-  template <int dim>
   void
   DisplacementCondition<dim>::declare_parameters(ParameterHandler &prm)
   {
@@ -158,10 +121,6 @@ namespace alveolus
   nodes_on(const Nodes<2> &, const std::string &, const std::string &);
   template std::vector<NodeId>
   nodes_on(const Nodes<3> &, const std::string &, const std::string &);
-  template std::unique_ptr<FunctionParser<2>>
-  parse_function(const std::string &, const unsigned int, const std::string &);
-  template std::unique_ptr<FunctionParser<3>>
-  parse_function(const std::string &, const unsigned int, const std::string &);
   template class DisplacementCondition<2>;
   template class DisplacementCondition<3>;
 

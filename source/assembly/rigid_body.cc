@@ -10,64 +10,6 @@ namespace alveolus
 {
   using namespace dealii;
 
-  namespace
-  {
-    /** A function of time alone. */
-    std::unique_ptr<FunctionParser<1>>
-    function_of_time(const std::string &expressions,
-                     const unsigned int n_components,
-                     const std::string &where)
-    {
-      const auto list = Utilities::split_string_list(expressions, ';');
-      if (list.size() != n_components)
-        throw InputError(where,
-                         "'" + expressions + "' has " +
-                           std::to_string(list.size()) + " expressions",
-                         std::to_string(n_components) +
-                           " are needed, separated by semicolons");
-      auto function = std::make_unique<FunctionParser<1>>(n_components);
-      try
-        {
-          function->initialize("t", list, {{"pi", numbers::PI}});
-          function->value(Point<1>(), 0);
-        }
-      catch (const ExceptionBase &error)
-        {
-          std::ostringstream message;
-          error.print_info(message);
-          throw InputError(where,
-                           "'" + expressions + "' cannot be evaluated (" +
-                             Utilities::trim(message.str()) + ")",
-                           "use expressions in t");
-        }
-      return function;
-    }
-
-
-
-    Tensor<1, 3>
-    parse_vector(const std::string &text, const std::string &where)
-    {
-      Tensor<1, 3> v;
-      const auto   list = Utilities::split_string_list(text, ',');
-      try
-        {
-          AssertThrow(list.size() <= 3, ExcInternalError());
-          for (unsigned int i = 0; i < list.size(); ++i)
-            v[i] = Utilities::string_to_double(list[i]);
-        }
-      catch (const ExceptionBase &)
-        {
-          throw InputError(where,
-                           "'" + text + "' is not a list of 2 or 3 numbers",
-                           "write for example 0, -8");
-        }
-      return v;
-    }
-  } // namespace
-
-
-
   template <int dim>
   void
   RigidBody<dim>::declare_parameters(ParameterHandler &prm)
@@ -130,8 +72,9 @@ namespace alveolus
     this->where               = path;
     const auto &configuration = state.configuration;
     ids = boundary_ids(configuration.mesh.names, parameters.on, path + " / On");
-    motion = function_of_time(parameters.motion, dim, path + " / Motion");
-    angle  = function_of_time(parameters.rotation, 1, path + " / Rotation");
+    motion = parse_function_of_time(parameters.motion, dim, path + " / Motion");
+    angle =
+      parse_function_of_time(parameters.rotation, 1, path + " / Rotation");
     centre = parse_vector(parameters.centre, path + " / Centre");
     axis   = parse_vector(parameters.axis, path + " / Axis");
     if (axis.norm() == 0.)
@@ -333,6 +276,30 @@ namespace alveolus
   {
     if (jumps)
       jumps->commit();
+  }
+
+
+
+  template <int dim>
+  void
+  RigidBody<dim>::save(const PortableFields<dim> &fields,
+                       const std::string         &prefix,
+                       BlockFile                 &blocks) const
+  {
+    if (law != nullptr)
+      fields.save(*jumps, prefix + "jumps", blocks);
+  }
+
+
+
+  template <int dim>
+  void
+  RigidBody<dim>::load(const PortableFields<dim> &fields,
+                       const std::string         &prefix,
+                       const BlockFile           &blocks)
+  {
+    if (law != nullptr)
+      fields.load(blocks, prefix + "jumps", *jumps);
   }
 
 

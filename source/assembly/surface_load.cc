@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <alveolus/assembly/displacement_condition.h>
 #include <alveolus/assembly/surface_load.h>
 
 #include <deal.II/base/qprojector.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
 #include <alveolus/base/text_file.h>
+#include <alveolus/base/whole_file.h>
 
 #include <cerrno>
 #include <cstring>
@@ -95,13 +96,9 @@ namespace alveolus
   void
   write_text_file(const std::string &name, const std::string &text)
   {
-    std::ofstream file(name, std::ios::binary | std::ios::trunc);
-    file << text;
-    file.close();
-    if (!file)
-      throw RunError("writing '" + name + "'",
-                     std::strerror(errno),
-                     "check that the folder exists, is writable and not full");
+    WholeFile file(name);
+    file.stream() << text;
+    file.commit();
   }
 
 

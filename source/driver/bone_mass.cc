@@ -106,6 +106,52 @@ namespace alveolus
             Utilities::MPI::max(greatest, communicator)};
   }
 
+  template <int dim>
+  std::vector<std::size_t>
+  BoneMass<dim>::begin_of_cells() const
+  {
+    std::vector<std::size_t> begin(volumes.size() / cells.n_points + 1);
+    for (std::size_t c = 0; c < begin.size(); ++c)
+      begin[c] = c * cells.n_points;
+    return begin;
+  }
+
+
+
+  template <int dim>
+  void
+  BoneMass<dim>::save(const PortableFields<dim> &fields,
+                      BlockFile                 &blocks) const
+  {
+    blocks.put("bone mass/books",
+               BlockFile::Numbers{mass,
+                                  initial,
+                                  by_remodelling,
+                                  by_volume_change,
+                                  through_boundary});
+    // Volumes could be computed from the positions, but not to the last bit:
+    // those of a Lagrangian step come from the sum of positions and increment.
+    fields.save(volumes, begin_of_cells(), "bone mass/volumes", blocks);
+  }
+
+
+
+  template <int dim>
+  void
+  BoneMass<dim>::load(const PortableFields<dim> &fields,
+                      const BlockFile           &blocks)
+  {
+    const auto &books = blocks.numbers("bone mass/books");
+    if (books.size() != 5)
+      blocks.refuse("bone mass/books", "does not hold 5 numbers");
+    mass             = books[0];
+    initial          = books[1];
+    by_remodelling   = books[2];
+    by_volume_change = books[3];
+    through_boundary = books[4];
+    fields.load(blocks, "bone mass/volumes", begin_of_cells(), volumes);
+  }
+
   template class BoneMass<2>;
   template class BoneMass<3>;
 } // namespace alveolus

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/base/interrupt.h>
+#include <alveolus/base/text_file.h>
 #include <alveolus/driver/messages.h>
 #include <alveolus/driver/simulation.h>
 
@@ -14,124 +16,55 @@ namespace alveolus
 
 
   template <int dim>
-  Simulation<dim>::Simulation(Scene<dim>     &scene,
-                              const MPI_Comm &communicator,
-                              Log            &log)
-    : scene(scene)
+  Simulation<dim>::Simulation(std::shared_ptr<Scene<dim>>      scene_object,
+                              const MPI_Comm                  &communicator,
+                              Log                             &log,
+                              std::shared_ptr<const BlockFile> resumed)
+    : scene_object(std::move(scene_object))
+    , scene(*this->scene_object)
     , communicator(communicator)
     , log(log)
     , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
     , step_control(scene.time)
+    , resumed(std::move(resumed))
+    , checkpoints(scene.output_directory)
   {
     on_first_process<InputError>(communicator, [&]() {
       std::error_code error;
       std::filesystem::create_directories(scene.output_directory, error);
-      log.open(scene.output_directory + "/log.txt");
-      std::ofstream resolved(scene.output_directory + "/parameters.prm");
+      folder_lock = std::make_unique<FolderLock>(scene.output_directory);
+      log.open(scene.output_directory + "/log.txt", this->resumed != nullptr);
+      std::ostringstream resolved;
       scene.write_resolved(resolved);
-      if (!resolved)
-        throw InputError(scene.output_directory,
-                         "the output folder cannot be written",
-                         "choose another `Output / Directory` or `--output`");
-    });
-    mesh = scene.mesh_source->create(communicator,
-                                     ".", // paths are resolved already
-                                     scene.output_directory);
-    build();
-  }
-
-
-
-  // Everything that depends on the mesh is made here and nowhere else.
-  template <int dim>
-  void
-  Simulation<dim>::build()
-  {
-    std::map<types::material_id, unsigned int> region_of_material;
-    std::vector<HistoryLayout>                 layouts;
-    regions.clear();
-    remodelling.clear();
-    for (unsigned int r = 0; r < scene.regions.size(); ++r)
-      {
-        const auto &definition = scene.regions[r];
-        for (const auto &name :
-             Utilities::split_string_list(definition.on, ','))
-          for (const auto id :
-               mesh.names.region(name,
-                                 "Regions / " + definition.name + " / On"))
-            region_of_material[id] = r;
-        const Material &material =
-          *scene.materials[scene.material_of(definition)].object;
-        regions.push_back({definition.name,
-                           &material,
-                           definition.treatment == "mean dilatation"});
-        layouts.emplace_back(material.history_fields(), dim);
-        const int law = scene.remodelling_of(definition);
-        remodelling.push_back(
-          law < 0 ? RegionRemodelling{}
-                  : RegionRemodelling{scene.remodelling_laws[law].object.get(),
-                                      dynamic_cast<const RemodelledBone *>(
-                                        &material)});
-      }
-    state = std::make_unique<State<dim>>(mesh,
-                                         scene.degree,
-                                         region_of_material,
-                                         layouts);
-    for (const auto &cell : mesh.triangulation->active_cell_iterators())
-      if (cell->is_locally_owned())
+      try
         {
-          const unsigned int c = cell->active_cell_index();
-          for (unsigned int q = 0; q < state->history.n_points; ++q)
-            regions[state->history.region(c)].material->initial_history(
-              state->history.old_record(c, q));
+          write_text_file(scene.output_directory + "/parameters.prm",
+                          resolved.str());
         }
-    state->history.trial_values = state->history.old_values;
-
-    for (auto &condition : scene.conditions)
+      catch (const RunError &error)
+        {
+          throw InputError(scene.output_directory,
+                           error.what(),
+                           "choose another `Output / Directory` or `--output`");
+        }
+    });
+    model =
+      std::make_unique<Model<dim>>(this->scene_object, first_mesh(), timer);
+    if (scene.remesher)
       {
-        condition.object->choose_interface_law(scene.interface_laws,
-                                               condition.where);
-        condition.object->attach(*state, condition.where);
-        conditions.push_back(std::move(condition.object));
+        scene.remesher->initialize(model->mesh.names,
+                                   "Remeshing / " + scene.remesher_type);
+        remesh_plan =
+          std::make_unique<RemeshPlan>(scene.remesh_plan, "Remeshing");
       }
-    for (auto &recorder : scene.recorders)
-      recorder.object->attach(*state, recorder.where);
-
-    equilibrium = std::make_unique<Equilibrium<dim>>(
-      *state, regions, conditions, scene.solver, timer);
-    staggered_step = std::make_unique<StaggeredStep<dim>>(
-      *state, *equilibrium, remodelling, scene.coupling, timer);
-    if (BoneMass<dim>::present(*state))
-      bone_mass = std::make_unique<BoneMass<dim>>(*state);
-
-    if (!scene.rezoning_rules.empty())
+    if (BoneMass<dim>::present(*model->state))
+      bone_mass = std::make_unique<BoneMass<dim>>(*model->state);
+    if (this->resumed)
       {
-        rezoner = std::make_unique<Rezoner<dim>>();
-        for (auto &rule : scene.rezoning_rules)
-          rezoner->add(std::move(rule.object), rule.where);
-        rezoner->attach(state->nodes, state->configuration.positions());
-        swept_transfer = std::make_unique<SweptTransfer<dim>>(
-          state->configuration,
-          state->history,
-          Registry<TransferScheme<dim>>::create(scene.transfer_scheme,
-                                                "Transfer / Scheme"),
-          "density",
-          scene.largest_donor_fraction);
-        nodal_transfer =
-          std::make_unique<NodalTransfer<dim>>(state->configuration);
-        for (auto &condition : conditions)
-          if (condition->face_history() != nullptr && !face_transfer)
-            face_transfer =
-              std::make_unique<FaceTransfer<dim>>(state->configuration);
-        for (unsigned int r = 0; r < regions.size(); ++r)
-          if (regions[r].mean_dilatation)
-            projected_regions.insert(r);
-        if (!projected_regions.empty())
-          trace_projection =
-            std::make_unique<TraceProjection<dim>>(swept_transfer->subcells());
+        restore();
+        return;
       }
-    quality =
-      mesh_quality(state->configuration, state->configuration.positions());
+    quality = model->quality();
     if (quality.n_inverted_corners > 0 || quality.smallest_point_jacobian <= 0.)
       throw InputError("Mesh",
                        "the initial mesh has inverted elements",
@@ -149,59 +82,19 @@ namespace alveolus
   {
     describe();
     wall_clock.start();
-    on_first_process<InputError>(communicator, [&]() {
-      history_file =
-        std::make_unique<HistoryFile>(scene.output_directory + "/history.csv");
-    });
-    if (scene.fields)
-      field_writer = std::make_unique<FieldWriter<dim>>(scene.output_directory);
-    write_fields(true);
+    open_files();
 
     std::string reason;
     try
       {
-        while (state->time < scene.time.end * (1. - 1e-12))
-          {
-            const double   stop = field_writer && scene.field_interval > 0.
-                                    ? std::min(next_field_time, scene.time.end)
-                                    : scene.time.end;
-            const double   dt   = step_control.next(state->time, stop);
-            const Interval interval{
-              state->time, dt == stop - state->time ? stop : state->time + dt};
-
-            const Verdict verdict = attempt(interval);
-            if (verdict.repeats())
-              {
-                ++rejected_attempts;
-                ++totals.rejected;
-                log.note("t = " + number(interval.end, 8) +
-                         " T rejected (step " + number(dt, 4) +
-                         "): " + verdict.reason);
-                if (!step_control.rejected(dt))
-                  throw RunError(
-                    "t = " + number(state->time, 8) + " T",
-                    verdict.reason + " even in the smallest step allowed (" +
-                      number(scene.time.minimum_step) + " T)",
-                    "rezone the mesh there, or reduce `Time / Minimum step`");
-                continue;
-              }
-
-            const NodalVector start = state->configuration.positions();
-            commit(interval);
-            if (rezoner)
-              rezone(start);
-            write_history(interval);
-            write_fields(false);
-            step_control.accepted(dt, mechanics_report.n_iterations);
-            rejected_attempts = 0;
-            report_progress();
-            if (quality.smallest_scaled_jacobian < scene.minimum_quality)
-              throw RunError(
-                "t = " + number(state->time, 8) + " T",
-                "the smallest scaled Jacobian is " +
-                  number(quality.smallest_scaled_jacobian),
-                "below `Monitor / Minimum quality`; rezone or remesh");
-          }
+        reason = advance();
+      }
+    catch (const InputError &error)
+      {
+        // What was computed before stays a result.
+        if (totals.steps == 0)
+          throw;
+        reason = error.what();
       }
     catch (const RunError &error)
       {
@@ -217,17 +110,148 @@ namespace alveolus
       {
         reason = "out of memory; use a coarser mesh";
       }
+    return finish(reason);
+  }
+
+
+
+  template <int dim>
+  std::string
+  Simulation<dim>::advance()
+  {
+    const auto interrupted = [&](const int signal) {
+      return "interrupted by " + Interrupt::name(signal) +
+             " at t = " + number(model->state->time, 8) + " T";
+    };
+    write_fields(totals.steps == 0);
+    while (model->state->time < scene.time.end * (1. - 1e-12))
+      {
+        if (const int signal = pause())
+          return interrupted(signal);
+        if (remesh_plan)
+          {
+            const std::string due =
+              remesh_plan->due(model->state->time,
+                               quality.smallest_scaled_jacobian);
+            if (!due.empty())
+              {
+                if (scene.checkpoint.write)
+                  save_checkpoint();
+                remesh(due);
+                if (const int signal = pause())
+                  return interrupted(signal);
+              }
+          }
+        const double time = model->state->time;
+        double       stop = scene.time.end;
+        if (field_writer && scene.field_interval > 0.)
+          stop = std::min(next_field_time, stop);
+        if (remesh_plan)
+          stop = remesh_plan->next_time(time, stop);
+        const double   dt = step_control.next(time, stop);
+        const Interval interval{time, dt == stop - time ? stop : time + dt};
+
+        const Verdict verdict = attempt(interval);
+        if (verdict.repeats())
+          {
+            ++rejected_attempts;
+            ++totals.rejected;
+            log.note("t = " + number(interval.end, 8) + " T rejected (step " +
+                     number(dt, 4) + "): " + verdict.reason);
+            if (step_control.rejected(dt))
+              continue;
+            if (remesh_plan && remesh_plan->after_failure(time) &&
+                remesh("no step is short enough"))
+              {
+                step_control.restart();
+                continue;
+              }
+            throw RunError(
+              "t = " + number(time, 8) + " T",
+              verdict.reason + " even in the smallest step allowed (" +
+                number(scene.time.minimum_step) + " T)",
+              "rezone the mesh there, or reduce `Time / Minimum step`");
+          }
+
+        const NodalVector start = model->state->configuration.positions();
+        state_is_whole          = false;
+        commit(interval);
+        const auto conclude = [&]() {
+          write_history();
+          step_control.accepted(dt, mechanics_report.n_iterations);
+          rejected_attempts = 0;
+          state_is_whole    = true;
+        };
+        if (model->rezoner)
+          try
+            {
+              rezone(*model, start, true);
+            }
+          catch (const RunError &)
+            {
+              // It left the mesh as it was: the step itself is a result.
+              conclude();
+              throw;
+            }
+        conclude();
+        write_fields(false);
+        report_progress();
+        if (quality.smallest_scaled_jacobian < scene.minimum_quality)
+          throw RunError("t = " + number(model->state->time, 8) + " T",
+                         "the smallest scaled Jacobian is " +
+                           number(quality.smallest_scaled_jacobian),
+                         "below `Monitor / Minimum quality`; rezone or remesh");
+      }
+    return "";
+  }
+
+
+
+  template <int dim>
+  bool
+  Simulation<dim>::finish(std::string reason)
+  {
+    // Whatever fails here, the rest is still tried.
+    const auto try_to = [&](const auto &action) {
+      std::string problem;
+      try
+        {
+          action();
+        }
+      catch (const ExceptionBase &error)
+        {
+          std::ostringstream message;
+          error.print_info(message);
+          problem = "internal error: " + message.str();
+        }
+      catch (const std::exception &error)
+        {
+          problem = error.what();
+        }
+      if (reason.find(problem) == std::string::npos)
+        reason += (reason.empty() ? "" : "; ") + problem;
+    };
+    // Before the fields: what is written for the end only is no part of the
+    // run that goes on.
+    if (scene.checkpoint.write && state_is_whole && !last_checkpoint.failed)
+      try_to([&]() { save_checkpoint(); });
+    try_to([&]() { write_fields(true); });
+    if (!reason.empty())
+      log.say("Stopped early: " + reason);
+    if (!reason.empty() && !last_checkpoint.file.empty())
+      log.say("Go on from " + last_checkpoint.file + " with --resume " +
+              scene.output_directory);
     try
       {
-        write_fields(true);
+        write_summary(reason.empty(), reason);
       }
     catch (const RunError &error)
       {
-        reason += (reason.empty() ? "" : "; ") + std::string(error.what());
+        // Then only the screen can tell.
+        throw RunError("stopped",
+                       (reason.empty() ? "" : reason + "; ") + error.what(),
+                       "");
       }
-    write_summary(reason.empty(), reason);
-    if (!reason.empty())
-      log.say("Stopped early: " + reason);
     return reason.empty();
   }
 
@@ -239,10 +263,11 @@ namespace alveolus
   {
     mechanics_report   = EquilibriumReport();
     remodelling_report = RemodellingSummary();
-    Verdict verdict =
-      staggered_step->solve(interval, mechanics_report, remodelling_report);
+    Verdict verdict    = model->staggered_step->solve(interval,
+                                                   mechanics_report,
+                                                   remodelling_report);
     if (!verdict.repeats())
-      verdict.combine(judge_corners());
+      verdict.combine(judge_corners(*model));
     return verdict;
   }
 
@@ -250,15 +275,16 @@ namespace alveolus
 
   template <int dim>
   Verdict
-  Simulation<dim>::judge_corners() const
+  Simulation<dim>::judge_corners(const Model<dim> &judged) const
   {
     if (scene.inverted_corners == "report")
       return Verdict{};
-    NodalVector x = state->configuration.positions();
+    const auto &configuration = judged.state->configuration;
+    NodalVector x             = configuration.positions();
     x.zero_out_ghost_values();
-    x += equilibrium->increment;
+    x += judged.equilibrium->increment;
     x.update_ghost_values();
-    const QualitySummary<dim> candidate = mesh_quality(state->configuration, x);
+    const QualitySummary<dim> candidate = mesh_quality(configuration, x);
     if (candidate.n_inverted_corners == 0)
       return Verdict{};
     std::ostringstream reason;
@@ -274,27 +300,21 @@ namespace alveolus
   void
   Simulation<dim>::commit(const Interval &interval)
   {
-    const NodalVector &increment = equilibrium->increment;
+    State<dim>        &state     = *model->state;
+    const NodalVector &increment = model->equilibrium->increment;
     if (bone_mass)
       {
-        NodalVector x = state->configuration.positions();
+        NodalVector x = state.configuration.positions();
         x.zero_out_ghost_values();
         x += increment;
         x.update_ghost_values();
-        bone_mass->book_step(*state, x);
+        bone_mass->book_step(state, x);
       }
-    state->configuration.move(increment);
-    state->displacement.zero_out_ghost_values();
-    state->displacement += increment;
-    state->displacement.update_ghost_values();
-    state->increment.zero_out_ghost_values();
-    state->increment = increment;
-    state->increment.update_ghost_values();
-    state->history.commit();
-    for (auto &condition : conditions)
+    state.accept(increment);
+    for (auto &condition : model->conditions)
       condition->commit();
-    state->time      = interval.end;
-    state->last_step = interval.end - interval.begin;
+    state.time      = interval.end;
+    state.last_step = interval.end - interval.begin;
     ++totals.steps;
     totals.iterations += mechanics_report.n_iterations;
     totals.max_iterations_of_a_step =
@@ -305,7 +325,7 @@ namespace alveolus
     residuals << std::scientific << std::setprecision(2);
     for (const double r : mechanics_report.residuals)
       residuals << ' ' << r;
-    log.note("t = " + number(state->time, 8) + " T accepted, residuals" +
+    log.note("t = " + number(state.time, 8) + " T accepted, residuals" +
              residuals.str());
   }
 
@@ -313,15 +333,20 @@ namespace alveolus
 
   template <int dim>
   void
-  Simulation<dim>::rezone(const NodalVector &start)
+  Simulation<dim>::rezone(Model<dim>        &rezoned_model,
+                          const NodalVector &start,
+                          const bool         booked)
   {
-    const NodalVector lagrangian = state->configuration.positions();
+    State<dim>       &state      = *rezoned_model.state;
+    const NodalVector lagrangian = state.configuration.positions();
     rezoning_report              = RezoningReport();
     NodalVector rezoned;
     {
       TimerOutput::Scope scope(timer, "rezoning");
-      rezoned =
-        rezoner->propose(state->nodes, start, lagrangian, rezoning_report);
+      rezoned = rezoned_model.rezoner->propose(state.nodes,
+                                               start,
+                                               lagrangian,
+                                               rezoning_report);
     }
     if (rezoning_report.cut_back)
       {
@@ -338,31 +363,50 @@ namespace alveolus
     if (rezoning_report.largest_motion == 0.)
       return;
 
-    TimerOutput::Scope   scope(timer, "transfer");
-    const TransferReport report =
-      swept_transfer->transfer(state->history, lagrangian, rezoned);
-    nodal_transfer->transfer(state->displacement, lagrangian, rezoned);
-    for (auto &condition : conditions)
-      if (condition->face_history() != nullptr)
-        face_transfer->transfer(*condition->face_history(),
-                                lagrangian,
-                                rezoned);
-    state->configuration.set_positions(rezoned);
+    TimerOutput::Scope        scope(timer, "transfer");
+    const std::vector<double> history      = state.history.old_values;
+    const NodalVector         displacement = state.displacement;
+    const NodalVector         mesh_displacement =
+      state.configuration.mesh_displacement();
+    std::vector<std::vector<double>> faces;
+    for (auto &condition : rezoned_model.conditions)
+      faces.push_back(condition->face_history() == nullptr
+                        ? std::vector<double>()
+                        : condition->face_history()->old_values);
+    try
+      {
+        const TransferReport report =
+          rezoned_model.swept_transfer->transfer(state.history,
+                                                 lagrangian,
+                                                 rezoned);
+        rezoned_model.nodal_transfer->transfer(state.displacement,
+                                               lagrangian,
+                                               rezoned);
+        for (auto &condition : rezoned_model.conditions)
+          if (condition->face_history() != nullptr)
+            rezoned_model.face_transfer->transfer(*condition->face_history(),
+                                                  lagrangian,
+                                                  rezoned);
+        state.configuration.set_positions(rezoned);
 
-    if (trace_projection)
-      trace_projection->apply(state->history, rezoned, projected_regions);
-    unsigned int n_limited   = report.n_limited;
-    unsigned int n_projected = 0;
-    for (const unsigned int cell : swept_transfer->subcells().owned_cells())
-      for (unsigned int q = 0; q < state->history.n_points; ++q)
-        n_projected +=
-          regions[state->history.region(cell)].material->make_admissible(
-            state->history.old_record(cell, q));
-    n_limited += Utilities::MPI::sum(n_projected, communicator);
-    totals.limited += n_limited;
-    totals.subcycles += report.n_subcycles;
-    if (bone_mass)
-      bone_mass->book_transfer(*state, report);
+        totals.limited +=
+          report.n_limited + rezoned_model.make_history_admissible();
+        totals.subcycles += report.n_subcycles;
+        if (booked && bone_mass)
+          bone_mass->book_transfer(state, report);
+      }
+    catch (const RunError &)
+      {
+        // As if the step had not been rezoned
+        state.history.old_values = history;
+        state.displacement       = displacement;
+        state.displacement.update_ghost_values();
+        state.configuration.set_mesh_displacement(mesh_displacement);
+        for (unsigned int i = 0; i < faces.size(); ++i)
+          if (rezoned_model.conditions[i]->face_history() != nullptr)
+            rezoned_model.conditions[i]->face_history()->old_values = faces[i];
+        throw;
+      }
   }
 
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What a simulation tells: screen, history file, fields, summary.
+#include <alveolus/assembly/rigid_body.h>
+#include <alveolus/base/text_file.h>
 #include <alveolus/driver/messages.h>
 #include <alveolus/driver/simulation.h>
 
@@ -22,6 +24,7 @@ namespace alveolus
                                   "remodelling",
                                   "rezoning",
                                   "transfer",
+                                  "remeshing",
                                   "monitor",
                                   "output"};
   } // namespace
@@ -33,25 +36,26 @@ namespace alveolus
   Simulation<dim>::describe()
   {
     log.say("Alveolus " ALVEOLUS_VERSION ": " + scene.title);
-    log.say("  mesh        " + mesh.description + "; degree " +
+    log.say("  mesh        " + model->mesh.description + "; degree " +
             std::to_string(scene.degree) + ", " +
-            std::to_string(state->configuration.dof_handler.n_dofs()) +
+            std::to_string(model->state->configuration.dof_handler.n_dofs()) +
             " unknowns");
-    for (unsigned int r = 0; r < regions.size(); ++r)
+    for (unsigned int r = 0; r < model->regions.size(); ++r)
       {
         const auto &definition = scene.regions[r];
         log.say("  region      " + definition.name + ": " +
                 scene.materials[scene.material_of(definition)].type + ", " +
-                (regions[r].mean_dilatation ? "mean dilatation"
-                                            : "full integration") +
+                (model->regions[r].mean_dilatation ? "mean dilatation"
+                                                   : "full integration") +
                 ", remodelling " + definition.remodelling + ", " +
-                std::to_string(state->history.layout(r).size * 2 *
-                               state->history.n_points * sizeof(double)) +
+                std::to_string(model->state->history.layout(r).size * 2 *
+                               model->state->history.n_points *
+                               sizeof(double)) +
                 " bytes of history per cell");
       }
-    for (const auto &condition : conditions)
+    for (const auto &condition : model->conditions)
       log.say("  condition   " + condition->describe());
-    if (rezoner)
+    if (model->rezoner)
       {
         std::string rules;
         for (const auto &rule : scene.rezoning_rules)
@@ -61,7 +65,9 @@ namespace alveolus
       }
     else
       log.say("  rezoning    off (Lagrangian mesh)");
-    log.say("  solver      " + equilibrium->linear_solver_name() + ", " +
+    if (remesh_plan)
+      log.say("  remeshing   " + scene.remesher_type);
+    log.say("  solver      " + model->equilibrium->linear_solver_name() + ", " +
             std::to_string(Utilities::MPI::n_mpi_processes(communicator)) +
             " process(es), " + std::to_string(MultithreadInfo::n_threads()) +
             " thread(s)");
@@ -72,35 +78,76 @@ namespace alveolus
 
   template <int dim>
   void
-  Simulation<dim>::write_history(const Interval &interval)
+  Simulation<dim>::write_history()
   {
     {
       TimerOutput::Scope scope(timer, "monitor");
-      quality =
-        mesh_quality(state->configuration, state->configuration.positions());
+      quality = model->quality();
       totals.smallest_quality =
         std::min(totals.smallest_quality, quality.smallest_scaled_jacobian);
     }
+    last_row = history_row();
+    TimerOutput::Scope scope(timer, "output");
+    on_first_process<RunError>(communicator,
+                               [&]() { history_file->write(last_row); });
+  }
+
+
+
+  template <int dim>
+  std::map<std::string, double>
+  Simulation<dim>::phase_seconds() const
+  {
+    const auto now = timer.get_summary_data(TimerOutput::total_wall_time);
+    std::map<std::string, double> seconds;
+    for (const char *const phase : phases)
+      seconds[phase] =
+        (now.count(phase) > 0 ? now.at(phase) : 0.) +
+        (seconds_before.count(phase) > 0 ? seconds_before.at(phase) : 0.);
+    return seconds;
+  }
+
+
+
+  template <int dim>
+  HistoryFile::Row
+  Simulation<dim>::history_row()
+  {
     TimerOutput::Scope scope(timer, "output");
     HistoryFile::Row   row, further;
-    row.emplace_back("time [T]", state->time);
+    row.emplace_back("time [T]", model->state->time);
+    // What is applied comes before what answers, of the first load without its
+    // name.
+    const auto name_of = [](const Condition<dim> &condition) {
+      return condition.where.substr(condition.where.find("/ ") + 2) + ": ";
+    };
+    bool first_load = true;
+    for (const auto &condition : model->conditions)
+      {
+        const auto applied = condition->applied(*model->state);
+        for (const auto &value : applied)
+          row.emplace_back((first_load ? "" : name_of(*condition)) +
+                             value.first,
+                           value.second);
+        first_load = first_load && applied.empty();
+      }
     // The first rigid body leads the row; what else it knows comes last.
     bool lead = true;
-    for (const auto &condition : conditions)
+    for (const auto &condition : model->conditions)
       {
         const auto recorded =
-          condition->record(*state, equilibrium->residual());
+          condition->record(*model->state, model->equilibrium->residual());
+        const bool leads = lead && dynamic_cast<const RigidBody<dim> *>(
+                                     condition.get()) != nullptr;
         const std::size_t n_leading =
-          lead ? std::min<std::size_t>(recorded.size(), dim == 2 ? 4 : 7) : 0;
+          leads ? std::min<std::size_t>(recorded.size(), dim == 2 ? 4 : 7) : 0;
         row.insert(row.end(), recorded.begin(), recorded.begin() + n_leading);
-        const std::string name =
-          condition->where.substr(condition->where.find("/ ") + 2);
         for (std::size_t i = n_leading; i < recorded.size(); ++i)
-          further.emplace_back(name + ": " + recorded[i].first,
+          further.emplace_back(name_of(*condition) + recorded[i].first,
                                recorded[i].second);
-        lead = lead && recorded.empty();
+        lead = lead && !leads;
       }
-    row.emplace_back("time step [T]", interval.end - interval.begin);
+    row.emplace_back("time step [T]", model->state->last_step);
     row.emplace_back("Newton iterations", mechanics_report.n_iterations);
     row.emplace_back("rejected attempts", rejected_attempts);
     row.emplace_back("smallest scaled Jacobian",
@@ -108,7 +155,7 @@ namespace alveolus
     row.emplace_back("inverted corners", quality.n_inverted_corners);
     if (bone_mass)
       {
-        const auto density = bone_mass->extremes(*state);
+        const auto density = bone_mass->extremes(*model->state);
         row.emplace_back("bone mass [mg]", bone_mass->mass);
         row.emplace_back("bone mass balance", bone_mass->balance());
         row.emplace_back("mass by remodelling [mg]", bone_mass->by_remodelling);
@@ -123,22 +170,23 @@ namespace alveolus
         row.emplace_back("points at greatest density",
                          remodelling_report.n_at_upper_bound);
       }
-    if (rezoner)
+    if (model->rezoner)
       row.emplace_back("limited values", totals.limited);
+    if (remesh_plan)
+      row.emplace_back("remeshes", remesh_plan->n_remeshes());
     row.emplace_back("stored energy [mJ]", mechanics_report.energy);
-    const auto seconds = timer.get_summary_data(TimerOutput::total_wall_time);
+    const auto seconds = phase_seconds();
     for (const char *const phase : phases)
-      row.emplace_back(std::string(phase) + " [s]",
-                       seconds.count(phase) > 0 ? seconds.at(phase) : 0.);
+      row.emplace_back(std::string(phase) + " [s]", seconds.at(phase));
     row.insert(row.end(), further.begin(), further.end());
-    for (const auto &recorder : scene.recorders)
+    for (const auto &recorder : model->scene->recorders)
       for (const auto &value :
-           recorder.object->record(*state, equilibrium->residual()))
+           recorder.object->record(*model->state,
+                                   model->equilibrium->residual()))
         row.emplace_back(recorder.name + ": " + value.first, value.second);
     if (scene.solver.report_imbalance)
       row.emplace_back("imbalance before step", mechanics_report.imbalance);
-    on_first_process<RunError>(communicator,
-                               [&]() { history_file->write(row); });
+    return row;
   }
 
 
@@ -147,17 +195,17 @@ namespace alveolus
   void
   Simulation<dim>::write_fields(const bool always)
   {
-    if (!field_writer || state->time == last_field_time)
+    if (!field_writer || model->state->time == last_field_time)
       return;
     const bool due = scene.field_interval > 0. &&
-                     state->time >= next_field_time * (1. - 1e-12);
+                     model->state->time >= next_field_time * (1. - 1e-12);
     if (!always && !due)
       return;
     TimerOutput::Scope scope(timer, "output");
-    field_writer->write(*state, regions);
-    last_field_time = state->time;
+    field_writer->write(*model->state, model->regions);
+    last_field_time = model->state->time;
     while (scene.field_interval > 0. &&
-           next_field_time <= state->time * (1. + 1e-12))
+           next_field_time <= model->state->time * (1. + 1e-12))
       next_field_time += scene.field_interval;
   }
 
@@ -167,17 +215,18 @@ namespace alveolus
   void
   Simulation<dim>::report_progress()
   {
-    const double elapsed = wall_clock.wall_time();
-    const double left = elapsed * (scene.time.end - state->time) / state->time;
-    char         line[200];
+    const double elapsed = wall_before + wall_clock.wall_time();
+    const double left =
+      elapsed * (scene.time.end - model->state->time) / model->state->time;
+    char line[200];
     std::snprintf(line,
                   sizeof(line),
                   "t = %9.4f T (%5.1f %%)  step %5u  dt %8.2e  Newton %2u  "
                   "quality %6.3f  rejected %u  left %.0f s",
-                  state->time,
-                  100. * state->time / scene.time.end,
+                  model->state->time,
+                  100. * model->state->time / scene.time.end,
                   totals.steps,
-                  state->last_step,
+                  model->state->last_step,
                   mechanics_report.n_iterations,
                   quality.smallest_scaled_jacobian,
                   totals.rejected,
@@ -197,14 +246,13 @@ namespace alveolus
     const double peak =
       Utilities::MPI::sum(static_cast<double>(memory.VmHWM), communicator);
     const std::size_t history_bytes =
-      Utilities::MPI::sum(state->history.memory_consumption(), communicator);
-    if (Utilities::MPI::this_mpi_process(communicator) != 0)
-      return;
+      Utilities::MPI::sum(model->state->history.memory_consumption(),
+                          communicator);
     nlohmann::ordered_json summary;
     summary["completed"]         = completed;
     summary["reason"]            = reason;
     summary["title"]             = scene.title;
-    summary["time"]              = state->time;
+    summary["time"]              = model->state->time;
     summary["steps"]             = totals.steps;
     summary["rejected attempts"] = totals.rejected;
     summary["Newton iterations"] = totals.iterations;
@@ -217,12 +265,14 @@ namespace alveolus
     summary["smallest scaled Jacobian"] = totals.smallest_quality;
     summary["inverted corners"]         = quality.n_inverted_corners;
     summary["limited values"]           = totals.limited;
-    if (rezoner)
+    if (model->rezoner)
       {
         summary["rezonings cut back"]      = totals.cut_back;
         summary["rezonings not converged"] = totals.unconverged_rezonings;
         summary["transfer sub-cycles"]     = totals.subcycles;
       }
+    if (remesh_plan)
+      summary["remeshes"] = remesh_plan->n_remeshes();
     if (bone_mass)
       {
         summary["bone mass [mg]"]               = bone_mass->mass;
@@ -232,23 +282,26 @@ namespace alveolus
         summary["mass through boundaries [mg]"] = bone_mass->through_boundary;
         summary["bone mass balance"]            = bone_mass->balance();
       }
-    summary["cells"]            = mesh.triangulation->n_global_active_cells();
-    summary["unknowns"]         = state->configuration.dof_handler.n_dofs();
+    summary["cells"]    = model->mesh.triangulation->n_global_active_cells();
+    summary["unknowns"] = model->state->configuration.dof_handler.n_dofs();
     summary["history [bytes]"]  = history_bytes;
     summary["peak memory [kB]"] = peak;
-    summary["wall time [s]"]    = wall_clock.wall_time();
-    const auto seconds = timer.get_summary_data(TimerOutput::total_wall_time);
+    const double wall_time      = wall_before + wall_clock.wall_time();
+    summary["wall time [s]"]    = wall_time;
+    const auto seconds          = phase_seconds();
     for (const char *const phase : phases)
-      summary["seconds per phase"][phase] =
-        seconds.count(phase) > 0 ? seconds.at(phase) : 0.;
-    summary["processes"] = Utilities::MPI::n_mpi_processes(communicator);
-    summary["threads"]   = MultithreadInfo::n_threads();
+      summary["seconds per phase"][phase] = seconds.at(phase);
+    summary["checkpoint"] = last_checkpoint.file;
+    summary["processes"]  = Utilities::MPI::n_mpi_processes(communicator);
+    summary["threads"]    = MultithreadInfo::n_threads();
     summary["versions"]["alveolus"] = ALVEOLUS_VERSION;
     summary["versions"]["deal.II"]  = DEAL_II_PACKAGE_VERSION;
-    std::ofstream file(scene.output_directory + "/summary.json");
-    file << summary.dump(2) << std::endl;
+    on_first_process<RunError>(communicator, [&]() {
+      write_text_file(scene.output_directory + "/summary.json",
+                      summary.dump(2) + "\n");
+    });
     if (completed)
-      log.say("Completed in " + number(wall_clock.wall_time(), 4) +
+      log.say("Completed in " + number(wall_time, 4) +
               " s: " + std::to_string(totals.steps) + " steps, " +
               std::to_string(totals.iterations) + " Newton iterations, " +
               std::to_string(totals.rejected) +
@@ -260,10 +313,18 @@ namespace alveolus
   Simulation<2>::describe();
   template void
   Simulation<3>::describe();
+  template std::map<std::string, double>
+  Simulation<2>::phase_seconds() const;
+  template std::map<std::string, double>
+  Simulation<3>::phase_seconds() const;
+  template HistoryFile::Row
+  Simulation<2>::history_row();
+  template HistoryFile::Row
+  Simulation<3>::history_row();
   template void
-  Simulation<2>::write_history(const Interval &);
+  Simulation<2>::write_history();
   template void
-  Simulation<3>::write_history(const Interval &);
+  Simulation<3>::write_history();
   template void
   Simulation<2>::write_fields(const bool);
   template void

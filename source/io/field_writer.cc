@@ -1,17 +1,40 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
+#include <alveolus/base/whole_file.h>
 #include <alveolus/io/field_writer.h>
 #include <alveolus/mesh/quality.h>
 
 #include <deal.II/numerics/data_out.h>
 
 #include <cstdio>
-#include <fstream>
 #include <limits>
+#include <sstream>
 
 namespace alveolus
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** With deal.II's functions, which throw its own kind of error. */
+    template <typename Function>
+    void
+    write_whole_file(const std::string &name, const Function &write)
+    {
+      WholeFile file(name);
+      try
+        {
+          write(file.stream());
+        }
+      catch (const ExcIO &)
+        {
+          file.stream().setstate(std::ios::failbit);
+        }
+      file.commit();
+    }
+  } // namespace
+
+
 
   template <int dim>
   std::vector<std::pair<std::string, Vector<float>>>
@@ -139,36 +162,85 @@ namespace alveolus
     const auto         piece = [&](const unsigned int rank) {
       return base + (n > 1 ? "." + std::to_string(rank) : "") + ".vtu";
     };
-    bool written = true;
-    {
-      std::ofstream out(directory + "/" + piece(me));
-      data_out.write_vtu(out);
-      out.close();
-      written = !out.fail();
-    }
+    // The other processes learn of a failure before anything refers to the
+    // files.
+    std::string problem;
+    const auto  attempt = [&](const auto &action) {
+      try
+        {
+          action();
+        }
+      catch (const RunError &error)
+        {
+          problem = error.what();
+        }
+      const unsigned int first =
+        Utilities::MPI::min(problem.empty() ? n : me, communicator);
+      if (first < n)
+        throw RunError("fields",
+                       Utilities::MPI::broadcast(communicator, problem, first),
+                       "");
+    };
+    attempt([&]() {
+      write_whole_file(directory + "/" + piece(me),
+                       [&](std::ostream &out) { data_out.write_vtu(out); });
+    });
     std::string joined = piece(0);
     if (n > 1)
       joined = base + ".pvtu";
-    times.emplace_back(state.time, joined);
-    if (me == 0)
-      {
-        if (n > 1)
-          {
-            std::vector<std::string> pieces;
-            for (unsigned int rank = 0; rank < n; ++rank)
-              pieces.push_back(piece(rank));
-            std::ofstream out(directory + "/" + joined);
+    auto all = times;
+    all.emplace_back(state.time, joined);
+    attempt([&]() {
+      if (me != 0)
+        return;
+      if (n > 1)
+        {
+          std::vector<std::string> pieces;
+          for (unsigned int rank = 0; rank < n; ++rank)
+            pieces.push_back(piece(rank));
+          write_whole_file(directory + "/" + joined, [&](std::ostream &out) {
             data_out.write_pvtu_record(out, pieces);
-            written = written && out.good();
-          }
-        std::ofstream pvd(directory + "/fields.pvd");
-        DataOutBase::write_pvd_record(pvd, times);
-        written = written && pvd.good();
+          });
+        }
+      write_whole_file(directory + "/fields.pvd", [&](std::ostream &out) {
+        DataOutBase::write_pvd_record(out, all);
+      });
+    });
+    times = std::move(all);
+  }
+
+
+
+  template <int dim>
+  void
+  FieldWriter<dim>::save(BlockFile &blocks) const
+  {
+    BlockFile::Numbers when;
+    std::string        files;
+    for (const auto &[time, file] : times)
+      {
+        when.push_back(time);
+        files += file + '\n';
       }
-    if (Utilities::MPI::min(written ? 1 : 0, communicator) == 0)
-      throw RunError(directory + "/" + base,
-                     "fields could not be written",
-                     "is the disk full, or has the folder vanished?");
+    blocks.put("fields/times", std::move(when));
+    blocks.put("fields/files", std::move(files));
+  }
+
+
+
+  template <int dim>
+  void
+  FieldWriter<dim>::load(const BlockFile &blocks)
+  {
+    times.clear();
+    std::istringstream files(blocks.text("fields/files"));
+    std::string        file;
+    for (const double time : blocks.numbers("fields/times"))
+      {
+        if (!std::getline(files, file))
+          blocks.refuse("fields/files", "is shorter than the times");
+        times.emplace_back(time, file);
+      }
   }
 
   template std::vector<std::pair<std::string, Vector<float>>>

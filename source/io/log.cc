@@ -16,11 +16,11 @@ namespace alveolus
 
 
   void
-  Log::open(const std::string &file_name)
+  Log::open(const std::string &file_name, const bool append)
   {
     if (!speaks)
       return;
-    file.open(file_name);
+    file.open(file_name, append ? std::ios::app : std::ios::trunc);
     if (!file)
       throw InputError(file_name,
                        "cannot be written",

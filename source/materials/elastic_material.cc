@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/materials/elastic_material.h>
+#include <alveolus/materials/ellipticity.h>
 
 #include <cmath>
 
@@ -67,6 +68,24 @@ namespace alveolus
     const SymmetricTensor<2, 3> stress =
       compose(principal_response(s.values).stress, s);
     return {von_mises(stress), -trace(stress) / 3.};
+  }
+
+
+
+  double
+  ElasticMaterial::ellipticity(const double *history) const
+  {
+    const dealii::Tensor<2, 3> at_rest(dealii::unit_symmetric_tensor<3>());
+    const Increment            increment(at_rest, unpack(history, dim));
+    MaterialResponse           response;
+    isotropic_response(increment,
+                       principal_response(increment.principal),
+                       true,
+                       response);
+    const double shear_modulus =
+      0.5 * principal_response({{0., 0., 0.}}).shear[0];
+    return least_acoustic_eigenvalue(response, increment.b, dim) /
+           shear_modulus;
   }
 
 

@@ -21,23 +21,7 @@ namespace alveolus
                       "Poisson's ratio nu [-], which turns the modulus into a "
                       "shear modulus.",
                       Double(-1., 0.5));
-    prm.add_parameter("Tangent modulus",
-                      list,
-                      "Points 'strain: tangent modulus [MPa]' of the uniaxial "
-                      "law by increasing engineering strain, separated by "
-                      "commas; a strain listed twice is a jump.",
-                      dealii::Patterns::Anything());
-    prm.add_parameter("Table file",
-                      file,
-                      "File with the same points in two columns, used if no "
-                      "points are listed.",
-                      dealii::Patterns::Anything());
-    prm.add_parameter("Tension branch",
-                      tension_branch,
-                      "as printed: all points of the table; continued: a jump "
-                      "at the largest strain (rupture) is left out, and the "
-                      "modulus before it goes on.",
-                      Selection("continued|as printed"));
+    input.declare(prm);
     prm.add_parameter(
       "Locking strain",
       locking_strain,
@@ -72,24 +56,9 @@ namespace alveolus
       throw InputError(where + "/Poisson's ratio",
                        "found " + std::to_string(poisson),
                        "it must be larger than -1");
-    if (!list.empty() && !file.empty())
-      throw InputError(where + "/Table file",
-                       "both a list of tangent moduli and a file are given",
-                       "leave one of them empty");
-    const std::string name =
-      where + (file.empty() ? "/Tangent modulus" : "/Table file");
-    auto points =
-      file.empty()
-        ? TangentTable::parse(list, name)
-        : TangentTable::read(file.front() == '/' ? file
-                                                 : input_directory + "/" + file,
-                             name);
-    law          = TangentTable(points, name); // checks all points
-    const auto n = points.size();
-    if (tension_branch == "continued" && n > 1 && points[n - 1].first > 0. &&
-        points[n - 1].first == points[n - 2].first)
-      points.pop_back();
-    law = TangentTable(points, name);
+    const std::string name   = input.origin(where);
+    const auto        points = input.points(where, input_directory);
+    law                      = TangentTable(points, name);
     if (locking_strain > 0.)
       {
         // Inside the limits the table as it is, beyond them the stiff branches

@@ -74,19 +74,20 @@ namespace alveolus
       if (branch.empty() || branch.front().first > 0.)
         branch.emplace(branch.begin(), 0., modulus_at_zero(points));
 
-      double stress = 0., energy = 0.;
+      double stress = 0., energy = 0., logarithmic = 0.;
       for (unsigned int i = 0; i < branch.size(); ++i)
         {
           const bool last = (i + 1 == branch.size());
           if (!last && branch[i + 1].first == branch[i].first)
             continue;
           Segment s;
-          s.begin   = branch[i].first;
-          s.modulus = branch[i].second;
-          s.stress  = stress;
-          s.energy  = energy;
-          s.end     = last ? std::numeric_limits<double>::infinity()
-                           : branch[i + 1].first;
+          s.begin       = branch[i].first;
+          s.modulus     = branch[i].second;
+          s.stress      = stress;
+          s.energy      = energy;
+          s.logarithmic = logarithmic;
+          s.end         = last ? std::numeric_limits<double>::infinity()
+                               : branch[i + 1].first;
           s.slope =
             last ? 0. : (branch[i + 1].second - s.modulus) / (s.end - s.begin);
           segments.push_back(s);
@@ -96,6 +97,7 @@ namespace alveolus
               energy +=
                 d * (s.stress + d * (s.modulus / 2. + d * s.slope / 6.));
               stress += d * (s.modulus + d * s.slope / 2.);
+              logarithmic += logarithmic_part(s, sign, d);
             }
         }
     };
@@ -171,6 +173,51 @@ namespace alveolus
 
 
 
+  Points
+  TangentTable::without_jumps(const Points      &points,
+                              const double       width,
+                              const std::string &where)
+  {
+    // Value at x of the line through two points, constant beyond the table.
+    const auto line =
+      [&](const std::size_t i, const std::size_t j, const double x) {
+        if (i >= points.size() || j >= points.size())
+          return points[i < points.size() ? i : j].second;
+        const auto &a = points[i], &b = points[j];
+        return a.second +
+               (b.second - a.second) * (x - a.first) / (b.first - a.first);
+      };
+    Points       result;
+    const double half = width / 2.;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      {
+        const bool jump =
+          i + 1 < points.size() && points[i].first == points[i + 1].first;
+        if (!jump)
+          {
+            result.push_back(points[i]);
+            continue;
+          }
+        const double strain = points[i].first;
+        // The lines on either side must reach over the two halves.
+        const bool before = i > 0, after = i + 2 < points.size();
+        if ((before && points[i - 1].first > strain - half) ||
+            (after && points[i + 2].first < strain + half) ||
+            (!result.empty() && result.back().first > strain - half))
+          throw InputError(where,
+                           "the jump at strain " + std::to_string(strain) +
+                             " has another point within the smoothing width",
+                           "make the width smaller than " +
+                             std::to_string(width));
+        result.emplace_back(strain - half, line(i - 1, i, strain - half));
+        result.emplace_back(strain + half, line(i + 1, i + 2, strain + half));
+        ++i;
+      }
+    return result;
+  }
+
+
+
   const TangentTable::Segment &
   TangentTable::find(const double strain) const
   {
@@ -200,6 +247,30 @@ namespace alveolus
     const double   d      = std::abs(strain) - s.begin;
     const double   stress = s.stress + d * (s.modulus + d * s.slope / 2.);
     return strain < 0. ? -stress : stress;
+  }
+
+
+
+  double
+  TangentTable::logarithmic_part(const Segment &s,
+                                 const double   sign,
+                                 const double   d)
+  {
+    // With |e| = b + y: int_0^d (m + c y)/(1 + sign (b + y)) dy
+    const double edge = 1. + sign * s.begin;
+    const double ln   = std::log1p(sign * d / edge); // ln((1+e)/(1+e_begin))
+    return sign * (s.slope * d + (s.modulus - sign * s.slope * edge) * ln);
+  }
+
+
+
+  double
+  TangentTable::logarithmic_stress(const double strain) const
+  {
+    const Segment &s    = find(strain);
+    const double   sign = strain < 0. ? -1. : 1.;
+    return sign * (s.logarithmic +
+                   logarithmic_part(s, sign, std::abs(strain) - s.begin));
   }
 
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
+#include <alveolus/base/expressions.h>
 #include <alveolus/mesh/mesh_source.h>
 
-#include <deal.II/base/function_parser.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold.h>
@@ -219,49 +219,18 @@ namespace alveolus
                          "take a function that makes coarse cells only");
     }
 
-    /** Expressions of the place as a function. */
-    std::unique_ptr<dealii::FunctionParser<dim>>
-    parse(const std::vector<std::string> &expressions,
-          const std::string              &where) const
-    {
-      auto f =
-        std::make_unique<dealii::FunctionParser<dim>>(expressions.size());
-      try
-        {
-          f->initialize(dim == 2 ? "x,y" : "x,y,z",
-                        expressions,
-                        {{"pi", dealii::numbers::PI}});
-          f->value(dealii::Point<dim>(), 0);
-        }
-      catch (const std::exception &error)
-        {
-          throw InputError(where,
-                           "cannot be evaluated: " + reason(error),
-                           std::string("use expressions in ") +
-                             (dim == 2 ? "x, y" : "x, y, z"));
-        }
-      return f;
-    }
-
     void
     map_vertices(dealii::Triangulation<dim> &triangulation) const
     {
       if (map.empty())
         return;
       const std::string where = section + " / Map";
-      const auto        list  = dealii::Utilities::split_string_list(map, ';');
-      if (list.size() != dim)
-        throw InputError(where,
-                         "'" + map + "' has " + std::to_string(list.size()) +
-                           " expressions",
-                         std::to_string(dim) +
-                           " are needed, separated by semicolons");
       for (const auto id : triangulation.get_manifold_ids())
         if (id != dealii::numbers::flat_manifold_id)
           throw InputError(where,
                            "'" + function + "' has curved manifolds",
                            "map meshes with straight edges only");
-      const auto f = parse(list, where);
+      const auto f = parse_function_of_place<dim>(map, dim, where);
       dealii::GridTools::transform(
         [&](const dealii::Point<dim> &x) {
           dealii::Point<dim> y;
@@ -282,7 +251,7 @@ namespace alveolus
            named_values(boundary_pieces, ';', where))
         {
           ++id;
-          const auto f       = parse({condition}, where);
+          const auto f = parse_function_of_place<dim>(condition, 1, where);
           bool       is_used = false;
           for (const auto &cell :
                mesh.triangulation->cell_iterators_on_level(0))

@@ -57,6 +57,27 @@ namespace alveolus
   } // namespace
 
   template <int dim>
+  double
+  scaled_jacobian(const std::vector<Point<dim>> &vertices,
+                  const unsigned int             vertex)
+  {
+    Tensor<2, dim> edges;
+    double         lengths = 1., sign = 1.;
+    for (unsigned int a = 0; a < dim; ++a)
+      {
+        edges[a] = vertices[vertex ^ (1u << a)] - vertices[vertex];
+        lengths *= edges[a].norm();
+        if (vertex & (1u << a))
+          sign = -sign;
+      }
+    const double scaled = sign * determinant(edges) / lengths;
+    // A vanishing edge is as bad as an inverted corner.
+    return std::isfinite(scaled) ? scaled : -1.;
+  }
+
+
+
+  template <int dim>
   QualitySummary<dim>
   mesh_quality(const Configuration<dim>           &configuration,
                const NodalVector                  &positions,
@@ -104,20 +125,8 @@ namespace alveolus
           double smallest = std::numeric_limits<double>::max();
           for (unsigned int v = 0; v < n_vertices; ++v)
             {
-              Tensor<2, dim> edges;
-              double         lengths = 1., sign = 1.;
-              for (unsigned int a = 0; a < dim; ++a)
-                {
-                  edges[a] = x[v ^ (1u << a)] - x[v];
-                  lengths *= edges[a].norm();
-                  if (v & (1u << a))
-                    sign = -sign;
-                }
-              double scaled = sign * determinant(edges) / lengths;
-              // A vanishing edge is as bad as an inverted corner.
-              if (!std::isfinite(scaled))
-                scaled = -1.;
-              smallest = std::min(smallest, scaled);
+              const double scaled = scaled_jacobian(x, v);
+              smallest            = std::min(smallest, scaled);
               if (counts && scaled <= 0.)
                 ++n_inverted;
             }
@@ -199,6 +208,10 @@ namespace alveolus
     return summary;
   }
 
+  template double
+  scaled_jacobian(const std::vector<Point<2>> &, const unsigned int);
+  template double
+  scaled_jacobian(const std::vector<Point<3>> &, const unsigned int);
   template QualitySummary<2>
   mesh_quality(const Configuration<2> &,
                const NodalVector &,

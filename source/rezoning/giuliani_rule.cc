@@ -142,7 +142,6 @@ namespace alveolus
     require_names(on, where);
     constexpr unsigned int n_vertices    = GeometryInfo<dim>::vertices_per_cell;
     const auto            &configuration = nodes.configuration;
-    const auto            &fe            = configuration.fe.base_element(0);
 
     const auto local = [&](const NodeId node) {
       LocalNode   indices;
@@ -161,24 +160,8 @@ namespace alveolus
     for (const std::string &name : on)
       {
         const auto &ids = configuration.mesh.names.region(name, where + "/On");
-        // The owner of a node sees all cells around it.
-        std::unordered_set<NodeId> border;
-        for (const auto &cell :
-             configuration.dof_handler.active_cell_iterators())
-          if (!cell->is_artificial())
-            {
-              nodes.cell_nodes(cell, cell_nodes);
-              const bool inside = ids.count(cell->material_id()) > 0;
-              if (!inside)
-                border.insert(cell_nodes.begin(), cell_nodes.end());
-              else
-                for (const unsigned int f : cell->face_indices())
-                  if (cell->face(f)->at_boundary())
-                    for (unsigned int k = 0; k < cell_nodes.size(); ++k)
-                      if (fe.has_support_on_face(k, f))
-                        border.insert(cell_nodes[k]);
-            }
-        std::set<NodeId> moved;
+        const auto  inside = inner_nodes(name, nodes, taken, where);
+        const std::unordered_set<NodeId> moved(inside.begin(), inside.end());
         for (const auto &cell :
              configuration.dof_handler.active_cell_iterators())
           if (!cell->is_artificial() && ids.count(cell->material_id()) > 0)
@@ -187,10 +170,8 @@ namespace alveolus
               for (unsigned int k = 0; k < cell_nodes.size(); ++k)
                 {
                   const NodeId node = cell_nodes[k];
-                  if (!nodes.is_owned(node) || border.count(node) > 0 ||
-                      taken.count(node) > 0)
+                  if (moved.count(node) == 0)
                     continue;
-                  moved.insert(node);
                   if (k < n_vertices)
                     {
                       Corner corner;
@@ -216,7 +197,7 @@ namespace alveolus
                     parents_of[kind][node] = cell_nodes;
                 }
             }
-        touched.insert(touched.end(), moved.begin(), moved.end());
+        touched.insert(touched.end(), inside.begin(), inside.end());
       }
 
     equalise = shapes == "equal";

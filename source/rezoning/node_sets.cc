@@ -3,6 +3,7 @@
 #include <alveolus/rezoning/node_sets.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace alveolus
 {
@@ -120,6 +121,45 @@ namespace alveolus
   }
 
   template <int dim>
+  std::vector<NodeId>
+  inner_nodes(const std::string      &name,
+              const Nodes<dim>       &nodes,
+              const std::set<NodeId> &taken,
+              const std::string      &where)
+  {
+    const auto &configuration = nodes.configuration;
+    const auto &fe            = configuration.fe.base_element(0);
+    const auto &ids = configuration.mesh.names.region(name, where + "/On");
+
+    // The owner of a node sees all cells around it.
+    std::unordered_set<NodeId> border;
+    std::set<NodeId>           inside;
+    std::vector<NodeId>        cell_nodes;
+    for (const auto &cell : configuration.dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          nodes.cell_nodes(cell, cell_nodes);
+          if (ids.count(cell->material_id()) == 0)
+            {
+              border.insert(cell_nodes.begin(), cell_nodes.end());
+              continue;
+            }
+          inside.insert(cell_nodes.begin(), cell_nodes.end());
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary())
+              for (unsigned int k = 0; k < cell_nodes.size(); ++k)
+                if (fe.has_support_on_face(k, f))
+                  border.insert(cell_nodes[k]);
+        }
+    std::vector<NodeId> result;
+    for (const NodeId node : inside)
+      if (nodes.is_owned(node) && border.count(node) == 0 &&
+          taken.count(node) == 0)
+        result.push_back(node);
+    return result;
+  }
+
+  template <int dim>
   std::bitset<dim>
   parse_components(const std::vector<std::string> &list,
                    const std::string              &where)
@@ -165,6 +205,10 @@ namespace alveolus
                                              const Nodes<dim> &,               \
                                              const std::set<NodeId> &,         \
                                              const std::string &);             \
+  template std::vector<NodeId> inner_nodes<dim>(const std::string &,           \
+                                                const Nodes<dim> &,            \
+                                                const std::set<NodeId> &,      \
+                                                const std::string &);          \
   template std::bitset<dim>    parse_components<dim>(                          \
     const std::vector<std::string> &, const std::string &);                 \
   template void copy_components<dim>(const Nodes<dim> &,                       \

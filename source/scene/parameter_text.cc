@@ -51,15 +51,9 @@ namespace alveolus
     std::string
     resolved(const ParameterText::Entry &entry)
     {
-      static const std::string ending = " file";
-      const bool               is_path =
-        entry.name == "File name" ||
-        (entry.name.size() > ending.size() &&
-         entry.name.compare(entry.name.size() - ending.size(),
-                            ending.size(),
-                            ending) == 0);
-      if (!is_path || entry.value.empty() || entry.value.front() == '/' ||
-          entry.directory.empty() || entry.directory == ".")
+      if (!ParameterText::is_path(entry.name) || entry.value.empty() ||
+          entry.value.front() == '/' || entry.directory.empty() ||
+          entry.directory == ".")
         return entry.value;
       return entry.directory + "/" + entry.value;
     }
@@ -86,16 +80,48 @@ namespace alveolus
 
 
 
+  bool
+  ParameterText::is_path(const std::string &name)
+  {
+    static const std::string ending = " file";
+    return name == "File name" ||
+           (name.size() > ending.size() &&
+            name.compare(name.size() - ending.size(), ending.size(), ending) ==
+              0);
+  }
+
+
+
   ParameterText
-  ParameterText::read(const std::string              &file_name,
-                      const std::vector<std::string> &sets)
+  ParameterText::parse(const std::string &content, const std::string &name)
   {
     ParameterText text;
-    text.file_name = file_name;
-    std::vector<std::string> problems;
-    std::vector<std::string> open_files;
-    text.read_file(file_name, open_files, problems);
+    text.file_name = name;
+    std::vector<std::string> problems, open_files;
+    std::istringstream       in(content);
+    text.read_statements(in, name, open_files, problems);
+    if (!problems.empty())
+      throw InputError("parameters", joined(problems, "\n"), "");
+    return text;
+  }
 
+
+
+  void
+  ParameterText::add(const std::vector<std::string> &sets)
+  {
+    std::vector<std::string> problems;
+    add(sets, problems);
+    if (!problems.empty())
+      throw InputError("parameters", joined(problems, "\n"), "");
+  }
+
+
+
+  void
+  ParameterText::add(const std::vector<std::string> &sets,
+                     std::vector<std::string>       &problems)
+  {
     for (const auto &assignment : sets)
       {
         Entry       entry;
@@ -110,9 +136,23 @@ namespace alveolus
         entry.section = Utilities::split_string_list(path, '/');
         entry.name    = entry.section.back();
         entry.section.pop_back();
-        text.entries.push_back(entry);
+        entries.push_back(entry);
       }
+  }
 
+
+
+  ParameterText
+  ParameterText::read(const std::string              &file_name,
+                      const std::vector<std::string> &sets)
+  {
+    ParameterText text;
+    text.file_name = file_name;
+    std::vector<std::string> problems;
+    std::vector<std::string> open_files;
+    text.read_file(file_name, open_files, problems);
+
+    text.add(sets, problems);
     if (!problems.empty())
       throw InputError("parameters", joined(problems, "\n"), "");
     return text;
@@ -138,6 +178,17 @@ namespace alveolus
                            "' cannot be read or is empty");
         return;
       }
+    read_statements(file, name, open_files, problems);
+  }
+
+
+
+  void
+  ParameterText::read_statements(std::istream             &file,
+                                 const std::string        &name,
+                                 std::vector<std::string> &open_files,
+                                 std::vector<std::string> &problems)
+  {
     open_files.push_back(name);
 
     std::vector<std::string>           section;

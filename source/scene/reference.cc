@@ -126,10 +126,21 @@ namespace alveolus
         << Registry<TransferScheme<2>>::names(", ")
         << "; `Largest donor fraction` bounds what may leave a sub-cell in one "
            "sub-cycle.\n\n";
+    for (const auto &entry : Registry<TransferScheme<2>>::entries())
+      out << "### Scheme = " << entry.first << "\n\n"
+          << entry.second.description << "\n\n";
+    write_registry<Remesher<2>>(
+      "Remeshing",
+      "`Type` is none or chooses a remesher, whose parameters stand in a "
+      "subsection of that name; its history is transferred by overlap in the "
+      "order of `Transfer / Scheme`. When to remesh:",
+      out);
+    write_section<RemeshPlan::Parameters>("Remeshing: when", out);
     out << "## Monitor\n\n`Inverted corners` (stop or report), `Minimum "
            "quality`.\n\n";
     write_section<StepControl::Parameters>("Time", out);
     write_registry<Recorder<2>>("Records", members, out);
-    out << "## Output\n\n`Directory`, `Fields`, `Field interval`.\n";
+    out << "## Output\n\n`Directory`, `Fields`, `Field interval`.\n\n";
+    write_section<CheckpointFolder::Parameters>("Checkpoint", out);
   }
 } // namespace alveolus

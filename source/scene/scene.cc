@@ -195,6 +195,22 @@ namespace alveolus
                       Patterns::Double(0.01, 1.));
     prm.leave_subsection();
 
+    prm.enter_subsection("Remeshing");
+    remesher_type = text.value("Remeshing/Type", "none");
+    prm.declare_entry("Type", remesher_type, Patterns::Anything(), "");
+    if (remesher_type != "none")
+      {
+        remesher = Registry<Remesher<dim>>::create(
+          remesher_type,
+          text.origin("Remeshing/Type") +
+            ": Remeshing / Type (none for no remeshing)");
+        remesh_plan.declare(prm);
+        prm.enter_subsection(remesher_type);
+        remesher->declare_parameters(prm);
+        prm.leave_subsection();
+      }
+    prm.leave_subsection();
+
     prm.enter_subsection("Monitor");
     prm.add_parameter("Inverted corners",
                       inverted_corners,
@@ -229,6 +245,10 @@ namespace alveolus
                       "Time between two writings of the fields [T]; 0: first "
                       "and last state only.",
                       Patterns::Double(0.));
+    prm.leave_subsection();
+
+    prm.enter_subsection("Checkpoint");
+    checkpoint.declare(prm);
     prm.leave_subsection();
   }
 

@@ -77,10 +77,41 @@ namespace alveolus
     for (auto &condition : conditions)
       condition->begin_step(state, Interval{state.time, state.time});
     set_constraints(Interval{state.time, state.time});
+    update_system();
+  }
+
+
+
+  template <int dim>
+  void
+  Equilibrium<dim>::update_system()
+  {
+    std::vector<unsigned int> revisions;
+    for (const auto &condition : conditions)
+      revisions.push_back(condition->couplings_revision());
+    if (system && revisions == coupled)
+      return;
+    coupled = revisions;
+    DofGroups couplings;
+    for (const auto &condition : conditions)
+      condition->add_couplings(couplings);
     system = make_linear_system(state.configuration.dof_handler,
                                 held,
                                 parameters.linear_solver,
-                                parameters.linear_tolerance);
+                                parameters.linear_tolerance,
+                                couplings);
+  }
+
+
+
+  template <int dim>
+  bool
+  Equilibrium<dim>::augment()
+  {
+    bool changed = false;
+    for (auto &condition : conditions)
+      changed = condition->augment(state, increment) || changed;
+    return changed;
   }
 
 
@@ -138,25 +169,64 @@ namespace alveolus
                              const bool         matrix,
                              const bool         lift)
   {
-    TimerOutput::Scope scope(timer, "assembly");
-    return assembler.assemble(du,
-                              AssemblyTarget{residual_vector,
-                                             matrix ? system.get() : nullptr,
-                                             lift ? &prescribed : nullptr,
-                                             lift ? &lifted : nullptr});
+    TimerOutput::Scope   scope(timer, "assembly");
+    const AssemblyResult result =
+      assembler.assemble(du,
+                         AssemblyTarget{residual_vector,
+                                        matrix ? system.get() : nullptr,
+                                        lift ? &prescribed : nullptr,
+                                        lift ? &lifted : nullptr});
+    if (held_imbalance != nullptr)
+      residual_vector.add(-held_imbalance->part, held_imbalance->forces);
+    return result;
+  }
+
+
+
+  template <int dim>
+  AssemblyResult
+  Equilibrium<dim>::assemble_without_increment()
+  {
+    NodalVector none(state.configuration.make_vector());
+    none.update_ghost_values();
+    return assemble(none, false, false);
+  }
+
+
+
+  template <int dim>
+  typename Equilibrium<dim>::Imbalance
+  Equilibrium<dim>::imbalance(const double t, double &relative)
+  {
+    const Interval now{t, t};
+    assembler.begin_step(now);
+    set_constraints(now);
+    const AssemblyResult result = assemble_without_increment();
+    if (!result.good)
+      throw RunError("Remeshing", result.reason, "try other densities");
+    Imbalance found{state.configuration.make_vector(), 1.};
+    found.forces.zero_out_ghost_values();
+    found.forces = residual_vector;
+    relative =
+      free_norm(residual_vector) / std::max(result.force_scale, 1e-300);
+    return found;
   }
 
 
 
   template <int dim>
   Verdict
-  Equilibrium<dim>::solve(const Interval &interval, EquilibriumReport &report)
+  Equilibrium<dim>::solve(const Interval    &interval,
+                          EquilibriumReport &report,
+                          const Imbalance   *held)
   {
+    held_imbalance    = held;
     const auto repeat = [](const std::string &reason) {
       return Verdict{Verdict::Kind::repeat, reason};
     };
     assembler.begin_step(interval);
     set_constraints(interval);
+    update_system();
     const auto &owned = state.configuration.locally_owned;
     NodalVector correction(state.configuration.make_vector());
     NodalVector trial(state.configuration.make_vector());
@@ -165,10 +235,7 @@ namespace alveolus
       {
         // Without increment the residual is what the last step left, what
         // transfers did to it, and the change of the loads.
-        correction.zero_out_ghost_values();
-        correction = 0.;
-        correction.update_ghost_values();
-        const AssemblyResult before = assemble(correction, false, false);
+        const AssemblyResult before = assemble_without_increment();
         if (before.good && before.force_scale > 0.)
           report.imbalance = free_norm(residual_vector) / before.force_scale;
       }
@@ -178,7 +245,16 @@ namespace alveolus
     bool           lift = true;
     AssemblyResult result;
     increment.zero_out_ghost_values();
-    if (parameters.predictor == "extrapolated" && state.last_step > 0.)
+    if (held != nullptr)
+      {
+        increment = 0.;
+        increment.update_ghost_values();
+        result = assemble(increment, true, false);
+        lift   = false;
+        if (!result.good)
+          return repeat(result.reason);
+      }
+    else if (parameters.predictor == "extrapolated" && state.last_step > 0.)
       {
         increment = state.increment;
         increment.zero_out_ghost_values();
@@ -200,6 +276,7 @@ namespace alveolus
           return repeat(result.reason);
       }
 
+    unsigned int n_before_augmentation = 0;
     for (;;)
       {
         const double norm  = free_norm(residual_vector);
@@ -210,10 +287,26 @@ namespace alveolus
           return repeat("the residual is not a finite number");
         if (!lift && (norm <= parameters.tolerance * result.force_scale ||
                       norm <= parameters.absolute_tolerance))
-          return Verdict{};
-        if (report.n_iterations >= parameters.max_iterations)
-          return repeat("Newton did not converge in " +
-                        std::to_string(report.n_iterations) +
+          {
+            try
+              {
+                if (!augment())
+                  return Verdict{};
+              }
+            catch (const RunError &error)
+              {
+                return repeat(error.what());
+              }
+            ++report.n_augmentations;
+            n_before_augmentation = report.n_iterations;
+            result                = assemble(increment, true, false);
+            if (!result.good)
+              return repeat(result.reason);
+            continue;
+          }
+        const unsigned int n = report.n_iterations - n_before_augmentation;
+        if (n >= parameters.max_iterations)
+          return repeat("Newton did not converge in " + std::to_string(n) +
                         " iterations (residual " +
                         Utilities::to_string(norm / scale) + ")");
 

@@ -212,8 +212,18 @@ namespace alveolus
       {
         HistoryStore<dim>        &history   = state.history;
         const std::vector<double> committed = history.old_values;
-        double                    change    = 0.;
-        unsigned int              n         = 0;
+        // They come back on every way out, exceptions too.
+        struct Restore
+        {
+          ~Restore()
+          {
+            values = committed;
+          }
+          std::vector<double>       &values;
+          const std::vector<double> &committed;
+        } const restore{history.old_values, committed};
+        double       change = 0.;
+        unsigned int n      = 0;
         do
           {
             if (++n > parameters.max_coupling_iterations)
@@ -257,7 +267,6 @@ namespace alveolus
             remodelling = remodel(dt);
         } while (remodelling.failure.empty() &&
                  change > parameters.coupling_tolerance);
-        history.old_values                = committed;
         remodelling.n_coupling_iterations = n;
         if (verdict.repeats())
           return verdict;

@@ -51,6 +51,28 @@ namespace alveolus
 
 
 
+  void
+  StepControl::restart()
+  {
+    dt = std::min(parameters.initial_step, parameters.maximum_step);
+  }
+
+
+
+  void
+  StepControl::save(BlockFile &blocks) const
+  {
+    blocks.put_number("step control/step", dt);
+  }
+
+  void
+  StepControl::load(const BlockFile &blocks)
+  {
+    dt = std::min(blocks.number("step control/step"), parameters.maximum_step);
+  }
+
+
+
   double
   StepControl::next(const double time, const double stop) const
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
 #include <alveolus/state/reproducible_sum.h>
+#include <alveolus/transfer/field_bounds.h>
 #include <alveolus/transfer/swept_transfer.h>
 
 #include <cmath>
@@ -12,9 +13,6 @@ namespace alveolus
 
   namespace
   {
-    /** Relative excess over a bound that counts as round-off. */
-    constexpr double round_off = 1e-12;
-
     /**
      * Violation of the geometric conservation law that means a wrong face, far
      * above the round-off of very flat cells and far below any real mistake.
@@ -49,6 +47,7 @@ namespace alveolus
       throw InputError("Transfer / Largest donor fraction",
                        "it is " + std::to_string(largest_donor_fraction),
                        "choose a number above 0 and at most 1");
+    this->scheme->attach(cells, store);
   }
 
   template <int dim>
@@ -94,48 +93,6 @@ namespace alveolus
         contents.push_back(sum);
       }
     return reproducible_sum(contents, configuration.communicator());
-  }
-
-  template <int dim>
-  unsigned int
-  SweptTransfer<dim>::enforce_bounds(HistoryStore<dim> &store) const
-  {
-    unsigned int counted = 0;
-    for (unsigned int r = 0; r < store.n_regions(); ++r)
-      {
-        const HistoryLayout &layout = store.layout(r);
-        for (unsigned int i = 0; i < layout.fields.size(); ++i)
-          {
-            const HistoryField &field = layout.fields[i];
-            if (field.shape != HistoryField::Shape::scalar ||
-                (std::isinf(field.lower) && std::isinf(field.upper)))
-              continue;
-            for (const unsigned int c : cells.owned_cells())
-              if (store.region(c) == r)
-                for (unsigned int q = 0; q < cells.n_points; ++q)
-                  {
-                    double &value = store.old_record(c, q)[layout.offsets[i]];
-                    if (value >= field.lower && value <= field.upper)
-                      continue;
-                    const double bound =
-                      value < field.lower ? field.lower : field.upper;
-                    const double scale = std::max(
-                      {std::abs(bound),
-                       std::isinf(field.lower) ? 0. : std::abs(field.lower),
-                       std::isinf(field.upper) ? 0. : std::abs(field.upper)});
-                    // Not a number: neither bound helps, leave it to be seen.
-                    if (std::isnan(value))
-                      {
-                        ++counted;
-                        continue;
-                      }
-                    if (std::abs(value - bound) > round_off * (scale + 1e-300))
-                      ++counted;
-                    value = bound;
-                  }
-          }
-      }
-    return Utilities::MPI::sum(counted, configuration.communicator());
   }
 
   template <int dim>

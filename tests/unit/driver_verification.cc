@@ -28,9 +28,9 @@ namespace
   simulate(const ParameterText &text, const std::string &output)
   {
     Log        log(Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0, true);
-    Scene<dim> scene(text);
-    scene.output_directory = output;
-    scene.fields           = false;
+    const auto scene        = std::make_shared<Scene<dim>>(text);
+    scene->output_directory = output;
+    scene->fields           = false;
     Simulation<dim> simulation(scene, MPI_COMM_WORLD, log);
     return simulation.run();
   }

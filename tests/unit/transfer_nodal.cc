@@ -3,11 +3,13 @@
 // Nodal fields and boundary history moved with the mesh on the same
 // connectivity.
 #include <alveolus/base/errors.h>
+#include <alveolus/transfer/face_overlap.h>
 #include <alveolus/transfer/face_transfer.h>
 #include <alveolus/transfer/nodal_transfer.h>
 
 #include <deal.II/base/timer.h>
 #include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <gtest/gtest.h>
 
@@ -527,6 +529,145 @@ TEST(FaceTransfer, SurfacesAreRefused)
   const NodalVector x = s.configuration->positions();
   EXPECT_THROW(FaceTransfer<3>(*s.configuration).transfer(history, x, x),
                RunError);
+}
+
+namespace
+{
+  /** Unit square with @p n cells along y, side x = 0 is boundary 0. */
+  std::function<void(parallel::distributed::Triangulation<2> &)>
+  rows(const unsigned int n, const bool upside_down = false)
+  {
+    return [=](parallel::distributed::Triangulation<2> &t) {
+      GridGenerator::subdivided_hyper_rectangle(
+        t, {3, n}, Point<2>(), Point<2>(1., 1.), true);
+      if (upside_down)
+        GridTools::rotate(numbers::PI, t);
+      if (upside_down)
+        GridTools::shift(Point<2>(1., 1.), t);
+      for (const auto &face : t.active_face_iterators())
+        if (face->at_boundary())
+          face->set_boundary_id(face->center()[0] < 1e-10 ? 0 : 1);
+    };
+  }
+} // namespace
+
+// Boundary history between unrelated meshes: means by arc length.
+TEST(FaceOverlap, StraightSide)
+{
+  for (const bool upside_down : {false, true})
+    {
+      Problem<2>     a(1, rows(2)), b(1, rows(3, upside_down));
+      FaceHistory<2> old_history(*a.mesh.triangulation, {0}, 2, 2);
+      FaceHistory<2> new_history(*b.mesh.triangulation, {0}, 2, 2);
+      fill<2>(old_history, [](const Point<2> &p, const unsigned int c) {
+        return c == 0 ? 0.7 : (p[1] < 0.25 ? 2. : -1.);
+      });
+      const FaceTransferReport report =
+        FaceOverlap<2>(*a.configuration, old_history)
+          .transfer(*b.configuration, new_history);
+      EXPECT_NEAR(report.length_before, 1., 1e-14);
+      EXPECT_NEAR(report.length_after, 1., 1e-14);
+      EXPECT_LT(report.largest_distance, 1e-15);
+      EXPECT_NEAR(report.integral_before[1], -0.25, 1e-14);
+      EXPECT_NEAR(report.integral_after[1], -0.25, 1e-14);
+      const FaceHistory<2> result = new_history;
+      // 1/4 is in the middle of the second of six sub-segments.
+      fill<2>(new_history, [](const Point<2> &p, const unsigned int) {
+        return p[1] < 1. / 6. ? 2. : (p[1] < 2. / 6. ? 0.5 : -1.);
+      });
+      for (unsigned int i = 0; i < result.faces().size(); ++i)
+        for (unsigned int q = 0; q < 2; ++q)
+          {
+            EXPECT_EQ(result.old_record(i, q)[0], 0.7);
+            EXPECT_NEAR(result.old_record(i, q)[1],
+                        new_history.old_record(i, q)[0],
+                        1e-14);
+          }
+    }
+}
+
+// A closed curve, turned so that its begin is elsewhere; and the same bits on
+// any number of processes.
+TEST(FaceOverlap, ClosedCurve)
+{
+  for (const unsigned int degree : {1, 2})
+    {
+      std::map<std::pair<std::string, unsigned int>, std::vector<double>>
+        reference;
+      for (const MPI_Comm communicator : {MPI_COMM_SELF, MPI_COMM_WORLD})
+        {
+          Problem<2> a(degree, &ball<2>, communicator);
+          Problem<2> b(
+            degree,
+            [](parallel::distributed::Triangulation<2> &t) {
+              GridGenerator::hyper_ball(t);
+              t.refine_global(4);
+            },
+            communicator);
+          const double angle = 0.3;
+          b.configuration->set_positions(
+            b.moved([=](const Point<2> &p) -> Tensor<1, 2> {
+              const double c = std::cos(angle), sn = std::sin(angle);
+              return Point<2>(c * p[0] - sn * p[1], sn * p[0] + c * p[1]) - p;
+            }));
+          FaceHistory<2> old_history(*a.mesh.triangulation, {0}, degree + 1, 2);
+          FaceHistory<2> new_history(*b.mesh.triangulation, {0}, degree + 1, 2);
+          const auto     field = [](const Point<2> &p, const unsigned int c) {
+            return c == 0 ? 1.1 : std::sin(2. * std::atan2(p[1], p[0]));
+          };
+          fill<2>(old_history, field);
+          const FaceTransferReport report =
+            FaceOverlap<2>(*a.configuration, old_history)
+              .transfer(*b.configuration, new_history);
+          // The sagitta of the old sides.
+          EXPECT_LT(report.largest_distance, degree == 1 ? 5e-3 : 1e-5);
+          EXPECT_NEAR(report.integral_after[1],
+                      report.integral_before[1],
+                      1e-3);
+          double largest = 0.;
+          for (unsigned int i = 0; i < new_history.faces().size(); ++i)
+            {
+              const auto  &face = new_history.faces()[i];
+              const auto   v    = face.cell->face(face.face_no)->center();
+              const double phi  = std::atan2(v[1], v[0]) + angle;
+              for (unsigned int q = 0; q < new_history.n_points; ++q)
+                {
+                  EXPECT_EQ(new_history.old_record(i, q)[0], 1.1);
+                  largest = std::max(largest,
+                                     std::abs(new_history.old_record(i, q)[1] -
+                                              std::sin(2. * phi)));
+                }
+              const std::vector<double> values(new_history.old_record(i, 0),
+                                               new_history.old_record(i, 0) +
+                                                 2 * new_history.n_points);
+              const auto                key =
+                std::make_pair(face.cell->id().to_string(), face.face_no);
+              if (communicator == MPI_COMM_SELF)
+                reference[key] = values;
+              else
+                EXPECT_EQ(values, reference.at(key));
+            }
+          // Within half an old sub-segment (pi/64) and half a new edge.
+          EXPECT_LT(largest, 2. * numbers::PI * (1. / 64. + 1. / 64.));
+        }
+    }
+}
+
+TEST(FaceOverlap, Errors)
+{
+  Problem<2>           a(1, rows(8)), b(1, rows(8));
+  FaceHistory<2>       old_history(*a.mesh.triangulation, {0}, 2, 2);
+  FaceHistory<2>       new_history(*b.mesh.triangulation, {0}, 2, 2);
+  FaceHistory<2>       other(*b.mesh.triangulation, {0}, 2, 3);
+  const FaceOverlap<2> overlap(*a.configuration, old_history);
+  EXPECT_THROW(overlap.transfer(*b.configuration, other), RunError);
+  b.configuration->set_positions(b.moved([](const Point<2> &) {
+    return Tensor<1, 2>({0.2, 0.});
+  }));
+  EXPECT_THROW(overlap.transfer(*b.configuration, new_history), RunError);
+  Problem<3>     c(1, &cube<3>);
+  FaceHistory<3> surface(*c.mesh.triangulation, {0}, 4, 3);
+  EXPECT_THROW(FaceOverlap<3>(*c.configuration, surface), RunError);
 }
 
 // Not a check but a measurement: about 1000 nodes, all of which move, and a

@@ -57,11 +57,16 @@ namespace alveolus
     name() const = 0;
   };
 
+  /** Groups of degrees of freedom; within a group all are coupled. */
+  using DofGroups = std::vector<std::vector<dealii::types::global_dof_index>>;
+
   /**
    * Make the system for a DoFHandler and its homogeneous constraints.
    * @param type `automatic` (UMFPACK on one process, MUMPS on several),
    *        `UMFPACK`, `MUMPS` or `multigrid` (CG with Trilinos ML)
    * @param tolerance relative residual of iterative solvers
+   * @param couplings entries of the matrix beyond those of the cells, among
+   *        relevant dofs
    * @throws InputError for UMFPACK on several processes
    */
   template <int dim>
@@ -69,7 +74,8 @@ namespace alveolus
   make_linear_system(const dealii::DoFHandler<dim>           &dof_handler,
                      const dealii::AffineConstraints<double> &constraints,
                      const std::string                       &type,
-                     const double                             tolerance);
+                     const double                             tolerance,
+                     const DofGroups                         &couplings = {});
 } // namespace alveolus
 
 #endif

@@ -7,6 +7,7 @@
 #include <alveolus/materials/interface_law.h>
 #include <alveolus/mesh/nodes.h>
 #include <alveolus/state/face_history.h>
+#include <alveolus/state/portable_fields.h>
 #include <alveolus/state/state.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -103,6 +104,14 @@ namespace alveolus
     virtual void
     attach(const State<dim> &state, const std::string &where) = 0;
 
+    /**
+     * After a remesh, once attached: go on from the same condition on the old
+     * mesh, e.g. with its multipliers. A face_history() is moved by the caller.
+     */
+    virtual void
+    take_over(const Condition<dim> & /*old*/)
+    {}
+
     /** Called before the iterations of each attempt at a step. */
     virtual void
     begin_step(const State<dim> & /*state*/, const Interval & /*interval*/)
@@ -122,6 +131,36 @@ namespace alveolus
                const AssemblyTarget & /*target*/)
     {}
 
+    /**
+     * Groups of degrees of freedom, beyond those of one cell, that add_forces()
+     * couples with each other; valid from begin_step() on, until
+     * couplings_revision() changes.
+     */
+    virtual void
+    add_couplings(DofGroups & /*couplings*/) const
+    {}
+
+    /** Changes whenever begin_step() has found other couplings; 0: never any.
+     */
+    virtual unsigned int
+    couplings_revision() const
+    {
+      return 0;
+    }
+
+    /**
+     * Newton has converged at @p increment: improve multipliers, if there are
+     * any and they are not good enough yet.
+     * @return whether they changed, so that the forces are out of balance again
+     * @throws RunError if they do not settle; the step is then repeated with a
+     *         smaller increment
+     */
+    virtual bool
+    augment(const State<dim> & /*state*/, const NodalVector & /*increment*/)
+    {
+      return false;
+    }
+
     /** The step is accepted. */
     virtual void
     commit()
@@ -136,6 +175,28 @@ namespace alveolus
     }
 
     /**
+     * Put what the next step depends on into blocks whose names begin with
+     * @p prefix, for a checkpoint; called between steps (collective). Nothing
+     * where parameters and mesh tell everything.
+     */
+    virtual void
+    save(const PortableFields<dim> & /*fields*/,
+         const std::string & /*prefix*/,
+         BlockFile & /*blocks*/) const
+    {}
+
+    /**
+     * Get it back, once attached (collective).
+     * @throws InputError through BlockFile if something is missing or does not
+     * fit
+     */
+    virtual void
+    load(const PortableFields<dim> & /*fields*/,
+         const std::string & /*prefix*/,
+         const BlockFile & /*blocks*/)
+    {}
+
+    /**
      * Quantities of this condition for the history file, with units in their
      * names (collective).
      * @param reactions internal minus external forces at the solution
@@ -143,6 +204,17 @@ namespace alveolus
     virtual std::vector<Recorded>
     record(const State<dim> & /*state*/,
            const NodalVector & /*reactions*/) const
+    {
+      return {};
+    }
+
+    /**
+     * What a load applies at the state's time, e.g. "applied force [N]"
+     * (collective): these columns of the history file come right after the
+     * time, before those of any other force.
+     */
+    virtual std::vector<Recorded>
+    applied(const State<dim> & /*state*/) const
     {
       return {};
     }

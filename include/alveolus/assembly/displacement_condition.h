@@ -3,8 +3,7 @@
 #define alveolus_assembly_displacement_condition_h
 
 #include <alveolus/assembly/condition.h>
-
-#include <deal.II/base/function_parser.h>
+#include <alveolus/base/expressions.h>
 
 #include <memory>
 
@@ -53,16 +52,6 @@ namespace alveolus
   nodes_on(const Nodes<dim>  &nodes,
            const std::string &list,
            const std::string &where);
-
-  /**
-   * A function of place and time from expressions in x, y(, z) and t, separated
-   * by semicolons. @throws InputError that says what is wrong in it
-   */
-  template <int dim>
-  std::unique_ptr<dealii::FunctionParser<dim>>
-  parse_function(const std::string &expressions,
-                 const unsigned int n_components,
-                 const std::string &where);
 } // namespace alveolus
 
 #endif

@@ -3,8 +3,7 @@
 #define alveolus_assembly_rigid_body_h
 
 #include <alveolus/assembly/condition.h>
-
-#include <deal.II/base/function_parser.h>
+#include <alveolus/base/expressions.h>
 
 #include <memory>
 
@@ -54,6 +53,14 @@ namespace alveolus
     {
       return jumps.get();
     }
+    void
+    save(const PortableFields<dim> &fields,
+         const std::string         &prefix,
+         BlockFile                 &blocks) const override;
+    void
+    load(const PortableFields<dim> &fields,
+         const std::string         &prefix,
+         const BlockFile           &blocks) override;
     std::vector<Recorded>
     record(const State<dim>  &state,
            const NodalVector &reactions) const override;

@@ -3,8 +3,7 @@
 #define alveolus_assembly_surface_load_h
 
 #include <alveolus/assembly/condition.h>
-
-#include <deal.II/base/function_parser.h>
+#include <alveolus/base/expressions.h>
 
 namespace alveolus
 {

@@ -29,7 +29,8 @@ namespace alveolus
                  const std::string &where);
 
   /**
-   * Write @p text to the file @p name, by the calling process only.
+   * Write @p text to the file @p name as a whole or not at all (WholeFile), by
+   * the calling process only.
    * @throws RunError if that fails, e.g. on a full disk
    */
   void

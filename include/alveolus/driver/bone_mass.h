@@ -2,6 +2,7 @@
 #ifndef alveolus_driver_bone_mass_h
 #define alveolus_driver_bone_mass_h
 
+#include <alveolus/state/portable_fields.h>
 #include <alveolus/state/state.h>
 #include <alveolus/transfer/subcells.h>
 #include <alveolus/transfer/swept_transfer.h>
@@ -37,6 +38,25 @@ namespace alveolus
     void
     book_transfer(const State<dim> &state, const TransferReport &report);
 
+    /**
+     * Go on with the books of the old mesh after a remesh. What the remesh
+     * changed is not explained: it stays in the balance.
+     */
+    void
+    take_over(const BoneMass &old)
+    {
+      initial          = old.initial;
+      by_remodelling   = old.by_remodelling;
+      by_volume_change = old.by_volume_change;
+      through_boundary = old.through_boundary;
+    }
+
+    /** Into and from blocks "bone mass/..." of a checkpoint (collective). */
+    void
+    save(const PortableFields<dim> &fields, BlockFile &blocks) const;
+    void
+    load(const PortableFields<dim> &fields, const BlockFile &blocks);
+
     double mass             = 0.; ///< now
     double initial          = 0.;
     double by_remodelling   = 0.; ///< all cumulative
@@ -61,6 +81,10 @@ namespace alveolus
     content(const State<dim>          &state,
             const std::vector<double> &volumes,
             const bool                 trial) const;
+
+    /** Where the volumes of each active cell begin, and where the last end. */
+    std::vector<std::size_t>
+    begin_of_cells() const;
 
     SubCells<dim>       cells;
     std::vector<double> volumes; ///< of the current mesh

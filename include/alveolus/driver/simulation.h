@@ -2,20 +2,21 @@
 #ifndef alveolus_driver_simulation_h
 #define alveolus_driver_simulation_h
 
+#include <alveolus/base/whole_file.h>
 #include <alveolus/driver/bone_mass.h>
+#include <alveolus/driver/model.h>
+#include <alveolus/io/checkpoint.h>
 #include <alveolus/io/field_writer.h>
 #include <alveolus/io/history_file.h>
 #include <alveolus/io/log.h>
-#include <alveolus/mesh/quality.h>
-#include <alveolus/scene/scene.h>
-#include <alveolus/transfer/face_transfer.h>
-#include <alveolus/transfer/nodal_transfer.h>
-#include <alveolus/transfer/swept_transfer.h>
-#include <alveolus/transfer/trace_projection.h>
+#include <alveolus/state/portable_fields.h>
+#include <alveolus/transfer/overlap_transfer.h>
 
 #include <deal.II/base/timer.h>
 
+#include <map>
 #include <memory>
+#include <string>
 
 namespace alveolus
 {
@@ -30,6 +31,14 @@ namespace alveolus
    *   4. Rezoning and transfer, if the scene has rezoning rules.
    *   5. Output.
    *
+   * Between two steps the state is whole: only then checkpoints are written
+   * (simulation_checkpoint.cc) and signals are heeded. A run that goes on from
+   * a checkpoint takes the same path from there.
+   *
+   * Before a step the mesh is replaced where the scene's plan asks for it: new
+   * mesh, transfer by overlap, equilibrium at constant load. Start and remesh
+   * make the same Model.
+   *
    * Whatever a scene does not ask for is a null pointer here: it costs nothing.
    */
   template <int dim>
@@ -37,11 +46,15 @@ namespace alveolus
   {
   public:
     /**
-     * Make output folder, mesh and all objects; solve nothing. @p scene must
-     * outlive this object; its conditions and rules move here.
+     * Make output folder, mesh and all objects; solve nothing.
+     * @param resumed a checkpoint to go on from, or null. Its settings are
+     *        those of the scene, or the differences are accepted.
      * @throws InputError
      */
-    Simulation(Scene<dim> &scene, const MPI_Comm &communicator, Log &log);
+    Simulation(std::shared_ptr<Scene<dim>>      scene,
+               const MPI_Comm                  &communicator,
+               Log                             &log,
+               std::shared_ptr<const BlockFile> resumed = nullptr);
 
     /** Say what will be modelled and what not (`--validate`). */
     void
@@ -67,18 +80,81 @@ namespace alveolus
       double       largest_transfer_error   = 0.;
     };
 
-    void
-    build();
     Verdict
     attempt(const Interval &interval);
     Verdict
-    judge_corners() const;
+    judge_corners(const Model<dim> &candidate) const;
     void
     commit(const Interval &interval);
     void
-    rezone(const NodalVector &start);
+    rezone(Model<dim>        &rezoned_model,
+           const NodalVector &start,
+           const bool         booked);
+    /** What became of one candidate of a remesh. */
+    struct Remeshed
+    {
+      std::unique_ptr<Model<dim>> model;
+      OverlapReport               transfer;
+      EquilibriumReport           settling;
+      unsigned int                n_parts   = 0;
+      double                      imbalance = 0.;
+      QualitySummary<dim>         before, after; ///< of the settling
+      double                      seconds_transfer = 0., seconds_settling = 0.;
+      std::string                 description;
+    };
+
+    /**
+     * Replace the mesh (simulation_remesh.cc).
+     * @return false if no candidate was good enough: then nothing has changed
+     */
+    bool
+    remesh(const std::string &reason);
+    /** Transfer to a candidate and bring it into equilibrium. */
+    Remeshed
+    try_candidate(RemeshCandidate<dim>        candidate,
+                  const OverlapTransfer<dim> &overlap);
     void
-    write_history(const Interval &interval);
+    settle(Remeshed &candidate);
+    void
+    write_remesh(const std::string         &reason,
+                 const Remeshed            &taken,
+                 const std::vector<double> &areas_before,
+                 const HistoryFile::Row    &row_before,
+                 const double               seconds_meshing);
+
+    /** The loop over the steps. @return why it ended early; empty if not */
+    std::string
+    advance();
+    /** Last files. @return whether the run is complete */
+    bool
+    finish(std::string reason);
+
+    // simulation_checkpoint.cc:
+    Mesh<dim>
+    first_mesh();
+    /** Set everything that a checkpoint knows. */
+    void
+    restore();
+    /** Begin the files of the run, or go on with them. */
+    void
+    open_files();
+    void
+    save_checkpoint();
+    /**
+     * Between two steps: save if it is time to.
+     * @return the signal that asks the run to stop, or 0
+     */
+    int
+    pause();
+
+    /** Wall time of each phase [s], with that before a checkpoint. */
+    std::map<std::string, double>
+    phase_seconds() const;
+
+    HistoryFile::Row
+    history_row();
+    void
+    write_history();
     void
     write_fields(const bool always);
     void
@@ -86,30 +162,22 @@ namespace alveolus
     void
     report_progress();
 
-    Scene<dim>         &scene;
-    MPI_Comm            communicator;
-    Log                &log;
-    dealii::TimerOutput timer;
+    std::unique_ptr<FolderLock> folder_lock; ///< on the first process
+    std::shared_ptr<Scene<dim>> scene_object;
+    Scene<dim>                 &scene; ///< the same
+    MPI_Comm                    communicator;
+    Log                        &log;
+    dealii::TimerOutput         timer;
 
-    Mesh<dim>                                    mesh;
-    std::unique_ptr<State<dim>>                  state;
-    std::vector<Region>                          regions;
-    std::vector<RegionRemodelling>               remodelling;
-    typename MechanicsAssembler<dim>::Conditions conditions;
-    std::unique_ptr<Equilibrium<dim>>            equilibrium;
-    std::unique_ptr<StaggeredStep<dim>>          staggered_step;
-
-    // Present only where the scene rezones:
-    std::unique_ptr<Rezoner<dim>>         rezoner;
-    std::unique_ptr<SweptTransfer<dim>>   swept_transfer;
-    std::unique_ptr<NodalTransfer<dim>>   nodal_transfer;
-    std::unique_ptr<FaceTransfer<dim>>    face_transfer;
-    std::unique_ptr<TraceProjection<dim>> trace_projection;
-    std::set<unsigned int>                projected_regions;
+    std::unique_ptr<Model<dim>> model;
+    // Present only where the scene remeshes:
+    std::unique_ptr<RemeshPlan>  remesh_plan;
+    std::unique_ptr<HistoryFile> remesh_file;
     // Present only where some region has a density:
     std::unique_ptr<BoneMass<dim>> bone_mass;
 
     std::unique_ptr<HistoryFile>      history_file;
+    HistoryFile::Row                  last_row; ///< of history_file
     std::unique_ptr<FieldWriter<dim>> field_writer;
     StepControl                       step_control;
     double                            next_field_time = 0.;
@@ -122,7 +190,24 @@ namespace alveolus
     unsigned int        rejected_attempts = 0; ///< of the current step
     Totals              totals;
     dealii::Timer       wall_clock;
-    double              start_time = 0.;
+
+    std::shared_ptr<const BlockFile> resumed; ///< until run() begins
+    /** Wall time spent before the checkpoint that this run goes on from [s]. */
+    std::map<std::string, double> seconds_before;
+    double                        wall_before = 0.;
+
+    /** Between two steps: state, books and history file belong together. */
+    bool                                 state_is_whole = true;
+    CheckpointFolder                     checkpoints;
+    std::unique_ptr<PortableFields<dim>> portable; ///< of the present mesh
+    struct
+    {
+      std::string  file; ///< the last one written or gone on from
+      unsigned int steps    = dealii::numbers::invalid_unsigned_int;
+      unsigned int rejected = 0, remeshes = 0;
+      double       wall_time = 0.;
+      bool         failed    = false;
+    } last_checkpoint;
   };
 } // namespace alveolus
 

@@ -3,6 +3,7 @@
 #define alveolus_io_field_writer_h
 
 #include <alveolus/assembly/cell_kernel.h>
+#include <alveolus/base/block_file.h>
 #include <alveolus/state/state.h>
 
 #include <string>
@@ -26,9 +27,18 @@ namespace alveolus
     /** @param directory existing folder */
     explicit FieldWriter(const std::string &directory);
 
-    /** Write one time. @throws RunError if a file cannot be written */
+    /**
+     * Write one time; each file as a whole or not at all.
+     * @throws RunError if a file cannot be written
+     */
     void
     write(const State<dim> &state, const std::vector<Region> &regions);
+
+    /** Into and from blocks "fields/...": what was written so far. */
+    void
+    save(BlockFile &blocks) const;
+    void
+    load(const BlockFile &blocks);
 
   private:
     std::string                                 directory;

@@ -23,16 +23,53 @@ namespace alveolus
     explicit HistoryFile(const std::string &file_name);
 
     /**
+     * Go on with a file that has at least @p n_rows complete rows: later ones
+     * are cut away. If it has fewer, missing_rows() tells how many.
+     * @throws InputError if the file cannot be read or written
+     */
+    HistoryFile(const std::string &file_name, const unsigned int n_rows);
+
+    /** Rows that a file to go on with should have had. */
+    unsigned int
+    missing_rows() const
+    {
+      return n_missing;
+    }
+
+    /** Complete rows that the file has. */
+    unsigned int
+    n_rows() const
+    {
+      return n_written;
+    }
+
+    /**
+     * Where the columns of @p row are not those of the file, in words; empty if
+     * they are or the file has none yet.
+     */
+    std::string
+    difference(const Row &row) const;
+
+    /** Wait until all rows are on the disk. @throws RunError */
+    void
+    bring_to_disk() const;
+
+    /**
      * Append a row; the first one fixes the columns.
-     * @throws RunError if it cannot be written (disk full)
+     * @throws RunError if it cannot be written (disk full, folder vanished), or
+     *         a file gone on with has other columns
      */
     void
     write(const Row &row);
 
   private:
+    [[noreturn]] void
+    fail() const;
+
     std::string   file_name;
     std::ofstream file;
-    std::size_t   n_columns = 0;
+    std::string   header; ///< first line; empty before the first row
+    unsigned int  n_written = 0, n_missing = 0;
   };
 } // namespace alveolus
 

@@ -17,9 +17,13 @@ namespace alveolus
      */
     Log(const bool speaks, const bool quiet);
 
-    /** Write to @p file_name from now on. @throws InputError */
+    /**
+     * Write to @p file_name from now on.
+     * @param append keep what is there
+     * @throws InputError
+     */
     void
-    open(const std::string &file_name);
+    open(const std::string &file_name, const bool append = false);
 
     /** A line for screen and file. */
     void

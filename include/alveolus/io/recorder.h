@@ -2,6 +2,7 @@
 #ifndef alveolus_io_recorder_h
 #define alveolus_io_recorder_h
 
+#include <alveolus/assembly/cell_kernel.h>
 #include <alveolus/assembly/condition.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -25,6 +26,11 @@ namespace alveolus
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
+    /** Offer the regions with their materials, before attach(). */
+    virtual void
+    offer_regions(const std::vector<Region> & /*regions*/)
+    {}
+
     /** Resolve names. @throws InputError */
     virtual void
     attach(const State<dim> &state, const std::string &where) = 0;
@@ -37,7 +43,7 @@ namespace alveolus
     record(const State<dim> &state, const NodalVector &reactions) const = 0;
   };
 
-  /** Displacement of the material at a named point [mm]. */
+  /** Displacement of the material at a named point, or its magnitude [mm]. */
   template <int dim>
   class PointDisplacement : public Recorder<dim>
   {
@@ -53,7 +59,8 @@ namespace alveolus
   private:
     std::string               on, component_list = "all";
     std::vector<unsigned int> components;
-    NodeId                    node = 0;
+    bool                      magnitude = false;
+    NodeId                    node      = 0;
   };
 
   /** Sum of the reactions on a boundary: what holds the body there [N]. */
@@ -75,7 +82,11 @@ namespace alveolus
     std::vector<NodeId>       nodes;
   };
 
-  /** Mean, least and greatest value of a scalar history field in its regions.
+  /**
+   * Least and greatest value of a scalar history field, or of a derived
+   * quantity of a material, at the quadrature points of the regions that have
+   * it; and, if a bound is given, the number of points where the value does not
+   * exceed it, e.g. where a law is no longer elliptic.
    */
   template <int dim>
   class FieldExtremes : public Recorder<dim>
@@ -84,13 +95,26 @@ namespace alveolus
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
     void
+    offer_regions(const std::vector<Region> &regions) override;
+    void
     attach(const State<dim> &state, const std::string &where) override;
     std::vector<Recorded>
     record(const State<dim>  &state,
            const NodalVector &reactions) const override;
 
   private:
-    std::string field;
+    /** Where the field is found in a region; none if both are negative. */
+    struct Place
+    {
+      int             offset   = -1; ///< in the history record
+      int             derived  = -1; ///< number of the derived quantity
+      const Material *material = nullptr;
+    };
+
+    std::string                   field, bound_text;
+    double                        bound = 0.;
+    std::vector<const Material *> materials; ///< by region
+    std::vector<Place>            places;    ///< by region
   };
 } // namespace alveolus
 

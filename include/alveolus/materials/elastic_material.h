@@ -45,6 +45,16 @@ namespace alveolus
     principal_response(const std::array<double, 3> &h) const = 0;
 
   protected:
+    /**
+     * Least eigenvalue of the acoustic tensor at a record (see
+     * least_acoustic_eigenvalue()) relative to the initial shear modulus [-]:
+     * laws that may lose ellipticity report it as derived quantity
+     * "ellipticity". 1 for the undeformed material, not positive where
+     * ellipticity is lost.
+     */
+    double
+    ellipticity(const double *history) const;
+
     unsigned int dim = 0;
   };
 

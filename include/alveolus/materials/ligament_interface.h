@@ -3,7 +3,7 @@
 #define alveolus_materials_ligament_interface_h
 
 #include <alveolus/materials/interface_law.h>
-#include <alveolus/materials/tangent_table.h>
+#include <alveolus/materials/table_input.h>
 
 namespace alveolus
 {
@@ -57,10 +57,8 @@ namespace alveolus
     double      poisson         = 0.49;
     double      locking_strain  = 0.; ///< 0: the table goes on
     double      locking_modulus = 0.;
-    std::string list;
-    std::string file;
-    std::string tension_branch = "continued";
-    std::string tangential     = "table";
+    std::string tangential      = "table";
+    TableInput  input           = {"continued", -1.};
 
     TangentTable law;
     TangentTable shear_law; ///< before the division by 2 (1 + nu)

@@ -41,6 +41,18 @@ namespace alveolus
     static std::vector<std::pair<double, double>>
     read(const std::string &file, const std::string &where);
 
+    /**
+     * The points with every jump replaced by a straight line over @p width of
+     * strain, half of it on either side, where it meets the lines of the
+     * table. Modulus and integrals beyond those widths change only by what the
+     * width cuts off, of order width^2 times the slopes in the stress.
+     * @throws InputError if another point lies within half a width of a jump
+     */
+    static std::vector<std::pair<double, double>>
+    without_jumps(const std::vector<std::pair<double, double>> &points,
+                  const double                                  width,
+                  const std::string                            &where);
+
     /** Tangent modulus [MPa]; at a jump the value on the side of zero. */
     double
     modulus(const double strain) const;
@@ -48,6 +60,14 @@ namespace alveolus
     /** Engineering stress [MPa]. */
     double
     stress(const double strain) const;
+
+    /**
+     * Integral of the modulus over the logarithmic strain, int E(e)/(1+e) de
+     * [MPa]: the stress of a law whose increments of true stress and
+     * logarithmic strain are related by the table. Strain above -1.
+     */
+    double
+    logarithmic_stress(const double strain) const;
 
     /** Energy per undeformed volume [MPa]. */
     double
@@ -60,7 +80,12 @@ namespace alveolus
       double begin, end;     ///< |strain|, end may be infinite
       double modulus, slope; ///< at begin, per |strain|
       double stress, energy; ///< magnitudes at begin
+      double logarithmic;    ///< magnitude of the logarithmic stress at begin
     };
+
+    /** int E/(1+e) de over the first @p d of a segment, its magnitude. */
+    static double
+    logarithmic_part(const Segment &s, const double sign, const double d);
 
     const Segment &
     find(const double strain) const;

@@ -25,6 +25,18 @@ namespace alveolus
   };
 
   /**
+   * Scaled Jacobian at a vertex of a cell with straight edges: det(e_1..e_dim)/
+   * prod|e_i| with the edge vectors e_i that leave it (Knupp 2000); -1 if an
+   * edge has no length.
+   * @param vertices positions of the vertices in deal.II's order; more may
+   *        follow
+   */
+  template <int dim>
+  double
+  scaled_jacobian(const std::vector<dealii::Point<dim>> &vertices,
+                  const unsigned int                     vertex);
+
+  /**
    * Scaled Jacobian of the vertices of each active cell for the mesh at
    * @p positions: at a vertex det(e_1..e_dim)/prod|e_i| with the edge vectors
    * e_i that leave it, of a cell the smallest over its vertices (Knupp 2000); a

@@ -34,6 +34,18 @@ namespace alveolus
            const std::set<NodeId>         &taken,
            const std::string              &where);
 
+  /**
+   * Owned nodes inside the region called @p name, ascending: neither at the
+   * boundary of the domain, nor shared with another region, nor in @p taken.
+   * @throws InputError if there is no such region
+   */
+  template <int dim>
+  std::vector<NodeId>
+  inner_nodes(const std::string      &name,
+              const Nodes<dim>       &nodes,
+              const std::set<NodeId> &taken,
+              const std::string      &where);
+
   /** @throws InputError if @p names is empty. */
   void
   require_names(const std::vector<std::string> &names,

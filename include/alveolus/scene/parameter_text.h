@@ -4,6 +4,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,24 @@ namespace alveolus
     static ParameterText
     read(const std::string &file_name, const std::vector<std::string> &sets);
 
+    /**
+     * The statements of @p text, which is called @p name in messages.
+     * @throws InputError as read()
+     */
+    static ParameterText
+    parse(const std::string &text, const std::string &name);
+
+    /**
+     * Add statements `Section/Subsection/Parameter=value`.
+     * @throws InputError for broken ones
+     */
+    void
+    add(const std::vector<std::string> &sets);
+
+    /** Whether a parameter of this name holds a path. */
+    static bool
+    is_path(const std::string &name);
+
     /** The last value set for "Section/Subsection/Name", or @p otherwise. */
     std::string
     value(const std::string &path, const std::string &otherwise) const;
@@ -63,10 +82,19 @@ namespace alveolus
     std::vector<Entry> entries;
 
   private:
+    /** The same; appends to @p problems instead of throwing. */
+    void
+    add(const std::vector<std::string> &sets,
+        std::vector<std::string>       &problems);
     void
     read_file(const std::string        &file_name,
               std::vector<std::string> &open_files,
               std::vector<std::string> &problems);
+    void
+    read_statements(std::istream             &in,
+                    const std::string        &name,
+                    std::vector<std::string> &open_files,
+                    std::vector<std::string> &problems);
   };
 
   /** Folder part of a file name, "." if there is none. */

@@ -3,8 +3,11 @@
 #define alveolus_scene_scene_h
 
 #include <alveolus/assembly/mechanics_assembler.h>
+#include <alveolus/io/checkpoint.h>
 #include <alveolus/io/recorder.h>
 #include <alveolus/mesh/mesh_source.h>
+#include <alveolus/remeshing/remesh_plan.h>
+#include <alveolus/remeshing/remesher.h>
 #include <alveolus/rezoning/rezoner.h>
 #include <alveolus/scene/parameter_text.h>
 #include <alveolus/solver/staggered_step.h>
@@ -70,6 +73,10 @@ namespace alveolus
     std::string transfer_scheme        = "Godunov";
     double      largest_donor_fraction = 0.5;
 
+    std::string                    remesher_type = "none";
+    std::unique_ptr<Remesher<dim>> remesher; ///< null if there is none
+    RemeshPlan::Parameters         remesh_plan;
+
     std::string inverted_corners = "stop";
     double      minimum_quality  = -1.;
 
@@ -79,12 +86,31 @@ namespace alveolus
     double      field_interval = 0.;
     bool        fields         = true;
 
+    CheckpointFolder::Parameters checkpoint;
+
     /** Index of the remodelling law of a region, or -1. */
     int
     remodelling_of(const Region &region) const;
     /** Index of the material of a region. */
     unsigned int
     material_of(const Region &region) const;
+
+    /**
+     * The same scene once more, with objects of its own: for another mesh,
+     * since conditions, rules and recorders are attached to one.
+     */
+    std::shared_ptr<Scene<dim>>
+    another() const
+    {
+      return std::make_shared<Scene<dim>>(text);
+    }
+
+    /** The statements the scene was made of. */
+    const ParameterText &
+    parameter_text() const
+    {
+      return text;
+    }
 
     /** The resolved parameters, with defaults, in the input format. */
     void

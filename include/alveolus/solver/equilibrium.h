@@ -19,6 +19,7 @@ namespace alveolus
     std::vector<double> residuals; ///< L1 norm over the sum of internal forces
     unsigned int        n_line_search = 0; ///< halvings of the Newton step
     unsigned int        n_linear_iterations = 0;
+    unsigned int        n_augmentations     = 0;  ///< of multipliers
     double              energy              = 0.; ///< stored [mJ (per mm)]
     /** L1 norm of the residual before the step over the internal forces. */
     double imbalance = 0.;
@@ -28,7 +29,9 @@ namespace alveolus
    * Static equilibrium of one increment by Newton's method with backtracking.
    * The prescribed increments enter through the first linear system (which sees
    * the tangent of the last state) or an extrapolation of the last increment;
-   * after that only unconstrained dofs change. Writes trial history only.
+   * after that only unconstrained dofs change. Where a condition has
+   * multipliers, Newton's method is repeated until they have settled. Writes
+   * trial history only.
    */
   template <int dim>
   class Equilibrium
@@ -55,12 +58,32 @@ namespace alveolus
                 const Parameters                             &parameters,
                 dealii::TimerOutput                          &timer);
 
+    /** Nodal forces a remesh left unbalanced, and the part still held. */
+    struct Imbalance
+    {
+      NodalVector forces; ///< internal minus external [N (per mm)]
+      double      part = 1.;
+    };
+
     /**
      * Solve for the increment of @p interval, from the committed state.
      * On success `increment` holds du and the trial history belongs to it.
+     * @param held if not null: the residual has to equal held->part times
+     *        held->forces instead of zero, and the first guess is no increment
      */
     Verdict
-    solve(const Interval &interval, EquilibriumReport &report);
+    solve(const Interval    &interval,
+          EquilibriumReport &report,
+          const Imbalance   *held = nullptr);
+
+    /**
+     * The residual of the committed state under the loads of time @p t: what a
+     * transfer left unbalanced.
+     * @param relative its L1 norm over the internal forces
+     * @throws RunError if the state gives no valid stress
+     */
+    Imbalance
+    imbalance(const double t, double &relative);
 
     NodalVector increment; ///< du [mm], ghosted
 
@@ -87,6 +110,12 @@ namespace alveolus
   private:
     void
     set_constraints(const Interval &interval);
+    /** Make the matrix, anew if conditions couple other dofs than before. */
+    void
+    update_system();
+    /** Let the conditions improve their multipliers; whether any did. */
+    bool
+    augment();
     double
     free_norm(const NodalVector &v) const;
     /** Scalar product over the unconstrained dofs. */
@@ -94,6 +123,9 @@ namespace alveolus
     free_work(const NodalVector &u, const NodalVector &v) const;
     AssemblyResult
     assemble(const NodalVector &du, const bool matrix, const bool lift);
+    /** Residual without increment under the loads already begun. */
+    AssemblyResult
+    assemble_without_increment();
 
     State<dim>                                   &state;
     typename MechanicsAssembler<dim>::Conditions &conditions;
@@ -103,8 +135,10 @@ namespace alveolus
     dealii::AffineConstraints<double> prescribed; ///< with inhomogeneities
     dealii::AffineConstraints<double> held;       ///< the same, homogeneous
     std::unique_ptr<LinearSystem>     system;
-    NodalVector                       residual_vector;
-    NodalVector                       lifted;
+    std::vector<unsigned int> coupled; ///< revisions the system was made for
+    NodalVector               residual_vector;
+    NodalVector               lifted;
+    const Imbalance          *held_imbalance = nullptr;
   };
 } // namespace alveolus
 

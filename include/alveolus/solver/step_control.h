@@ -2,6 +2,8 @@
 #ifndef alveolus_solver_step_control_h
 #define alveolus_solver_step_control_h
 
+#include <alveolus/base/block_file.h>
+
 #include <deal.II/base/parameter_handler.h>
 
 #include <string>
@@ -48,6 +50,16 @@ namespace alveolus
      */
     bool
     rejected(const double attempted);
+
+    /** Begin again with the first step, e.g. on a new mesh. */
+    void
+    restart();
+
+    /** Into and from blocks "step control/..." of a checkpoint. */
+    void
+    save(BlockFile &blocks) const;
+    void
+    load(const BlockFile &blocks);
 
     double
     step() const

@@ -33,6 +33,23 @@ namespace alveolus
                 dealii::Utilities::fixed_power<dim>(degree + 1))
     {}
 
+    /**
+     * Accept a Lagrangian step: the mesh follows the material by @p du
+     * (ghosted), trial history becomes old. Time is the caller's.
+     */
+    void
+    accept(const NodalVector &du)
+    {
+      configuration.move(du);
+      displacement.zero_out_ghost_values();
+      displacement += du;
+      displacement.update_ghost_values();
+      increment.zero_out_ghost_values();
+      increment = du;
+      increment.update_ghost_values();
+      history.commit();
+    }
+
     Configuration<dim> configuration;
     Nodes<dim>         nodes;
     NodalVector        displacement; ///< u of the material at the nodes [mm]

@@ -97,10 +97,6 @@ namespace alveolus
     content(const HistoryStore<dim>   &store,
             const std::vector<double> &volume) const;
 
-    /** Bring scalars back into their bounds; returns the number counted. */
-    unsigned int
-    enforce_bounds(HistoryStore<dim> &store) const;
-
     Work                                 work;
     const Configuration<dim>            &configuration;
     SubCells<dim>                        cells;

@@ -56,6 +56,14 @@ namespace alveolus
     declare_parameters(dealii::ParameterHandler &)
     {}
 
+    /**
+     * Called once before correct(), which gets the same @p cells and regions
+     * (collective).
+     */
+    virtual void
+    attach(const SubCells<dim> &, const HistoryStore<dim> &)
+    {}
+
     /** False if correct() has nothing to add, so that it is not called. */
     virtual bool
     has_correction() const = 0;

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_transfer_face_overlap_h
+#define alveolus_transfer_face_overlap_h
+
+#include <alveolus/mesh/configuration.h>
+#include <alveolus/state/face_history.h>
+#include <alveolus/transfer/boundary_curves.h>
+#include <alveolus/transfer/face_transfer.h>
+
+#include <memory>
+#include <vector>
+
+namespace alveolus
+{
+  /**
+   * History of a boundary (dim = 2) from an old mesh to an unrelated new one:
+   * the ends of the new sub-segments are projected onto the old curves; the new
+   * value is the mean of the old piecewise constant values over the piece of
+   * old arc length between them. First order, exact for constants, no new
+   * extrema; sum (piece of old arc length) x (value) is conserved where old and
+   * new curves coincide. New sub-segments beyond the end of an open curve take
+   * its last value.
+   *
+   * The constructor takes a picture of the old boundary (small, kept by every
+   * process), which may be gone when transfer() is called. The result is the
+   * same for any number of processes. Curves may not branch, and must be
+   * farther from each other than the new one is from the old one.
+   *
+   * Not yet written for surfaces (dim = 3).
+   */
+  template <int dim>
+  class FaceOverlap
+  {
+  public:
+    /**
+     * Takes the picture (collective).
+     * @throws RunError if the boundary branches or dim = 3
+     */
+    FaceOverlap(const Configuration<dim> &old_configuration,
+                const FaceHistory<dim>   &old_history);
+
+    /**
+     * Fill the old records of @p new_history (collective); trial records are
+     * not touched.
+     * @throws RunError if the new curve is farther from the old ones than half
+     *         an edge, changes from one to another, or folds back along it, or
+     *         the histories have not the same components
+     */
+    FaceTransferReport
+    transfer(const Configuration<dim> &new_configuration,
+             FaceHistory<dim>         &new_history) const;
+
+  private:
+    const unsigned int         n_points;
+    const unsigned int         n_components;
+    std::vector<double>        breaks;
+    std::unique_ptr<EdgeMap>   map;
+    std::vector<BoundaryEdge>  edges;
+    std::vector<BoundaryCurve> curves;
+    std::vector<ArcLengths>    lengths; ///< by curve
+  };
+} // namespace alveolus
+
+#endif
