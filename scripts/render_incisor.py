@@ -106,4 +106,5 @@ def main(root):
          os.path.join(root, "figures", "incisor-8-margins.png"))
 
 
-main(sys.argv[1])
+if __name__ == "__main__":
+    main(sys.argv[1])

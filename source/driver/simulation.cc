@@ -137,7 +137,7 @@ namespace alveolus
               {
                 if (scene.checkpoint.write)
                   save_checkpoint();
-                remesh(due);
+                remesh(due, due != "planned");
                 if (const int signal = pause())
                   return interrupted(signal);
               }
@@ -161,7 +161,7 @@ namespace alveolus
             if (step_control.rejected(dt))
               continue;
             if (remesh_plan && remesh_plan->after_failure(time) &&
-                remesh("no step is short enough"))
+                remesh("no step is short enough", false))
               {
                 step_control.restart();
                 continue;

@@ -14,7 +14,7 @@ namespace alveolus
 
   template <int dim>
   bool
-  Simulation<dim>::remesh(const std::string &reason)
+  Simulation<dim>::remesh(const std::string &reason, const bool for_quality)
   {
     TimerOutput::Scope scope(timer, "remeshing");
     const State<dim>  &old   = *model->state;
@@ -67,9 +67,10 @@ namespace alveolus
               break;
           }
       }
-    // A planned remesh may cost a little quality, an automatic one not.
+    // Unless it was quality that asked for it, a remesh may cost a little: where
+    // no step is short enough, other elements than the worst ones are the cause
     const double least =
-      (reason == "planned" ? 0.9 : 1.) * quality.smallest_scaled_jacobian;
+      (for_quality ? 1. : 0.9) * quality.smallest_scaled_jacobian;
     if (!best.model || best.after.smallest_scaled_jacobian <
                          std::min(scene.remesh_plan.accept_quality, least))
       {
@@ -259,7 +260,7 @@ namespace alveolus
   }
 
   template bool
-  Simulation<2>::remesh(const std::string &);
+  Simulation<2>::remesh(const std::string &, const bool);
   template bool
-  Simulation<3>::remesh(const std::string &);
+  Simulation<3>::remesh(const std::string &, const bool);
 } // namespace alveolus

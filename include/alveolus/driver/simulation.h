@@ -104,11 +104,13 @@ namespace alveolus
     };
 
     /**
-     * Replace the mesh (simulation_remesh.cc).
+     * Replace the mesh (simulation_remesh.cc). The new one's smallest scaled
+     * Jacobian has to reach `Accept quality`, or that of the old mesh; of which
+     * it may lose a tenth unless it is @p for_quality that it is wanted.
      * @return false if no candidate was good enough: then nothing has changed
      */
     bool
-    remesh(const std::string &reason);
+    remesh(const std::string &reason, const bool for_quality);
     /** Transfer to a candidate and bring it into equilibrium. */
     Remeshed
     try_candidate(RemeshCandidate<dim>        candidate,
