@@ -39,6 +39,7 @@ namespace alveolus
 
     if (rezoner || scene->remesher)
       {
+        make_reference_map();
         for (unsigned int r = 0; r < regions.size(); ++r)
           if (regions[r].mean_dilatation)
             projected_regions.insert(r);
@@ -127,6 +128,23 @@ namespace alveolus
 
 
   template <int dim>
+  void
+  Model<dim>::make_reference_map()
+  {
+    std::map<unsigned int, ReferenceMapRegion> mapped;
+    for (unsigned int r = 0; r < regions.size(); ++r)
+      if (scene->regions[r].deformation != "history")
+        mapped[r] = {scene->regions[r].deformation == "reference map",
+                     regions[r].mean_dilatation};
+    if (!mapped.empty())
+      reference_map = std::make_unique<ReferenceMap<dim>>(state->configuration,
+                                                          state->history,
+                                                          mapped);
+  }
+
+
+
+  template <int dim>
   unsigned int
   Model<dim>::make_history_admissible()
   {
@@ -143,6 +161,10 @@ namespace alveolus
             n += regions[state->history.region(c)].material->make_admissible(
               state->history.old_record(c, q));
         }
+    if (reference_map)
+      reference_map->apply(state->configuration.positions(),
+                           state->displacement,
+                           state->history);
     return Utilities::MPI::sum(n, state->configuration.communicator());
   }
 

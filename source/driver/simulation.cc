@@ -59,6 +59,7 @@ namespace alveolus
       }
     if (BoneMass<dim>::present(*model->state))
       bone_mass = std::make_unique<BoneMass<dim>>(*model->state);
+    begin_reference();
     if (this->resumed)
       {
         restore();
@@ -375,13 +376,14 @@ namespace alveolus
                         : condition->face_history()->old_values);
     try
       {
+        // First, since it may cut the rezoning back
+        state.displacement =
+          carry_displacement(rezoned_model, lagrangian, rezoned);
+        state.displacement.update_ghost_values();
         const TransferReport report =
           rezoned_model.swept_transfer->transfer(state.history,
                                                  lagrangian,
                                                  rezoned);
-        rezoned_model.nodal_transfer->transfer(state.displacement,
-                                               lagrangian,
-                                               rezoned);
         for (auto &condition : rezoned_model.conditions)
           if (condition->face_history() != nullptr)
             rezoned_model.face_transfer->transfer(*condition->face_history(),
@@ -394,6 +396,8 @@ namespace alveolus
         totals.subcycles += report.n_subcycles;
         if (booked && bone_mass)
           bone_mass->book_transfer(state, report);
+        if (booked && reference_outline)
+          note_reference_volumes();
       }
     catch (const RunError &)
       {

@@ -95,6 +95,11 @@ namespace alveolus
       remesh_plan->save(blocks);
     if (bone_mass)
       bone_mass->save(*portable, blocks);
+    if (reference_outline)
+      {
+        reference_outline->save(blocks);
+        blocks.put("reference outline/volumes", reference_volumes);
+      }
 
     blocks.put("totals",
                BlockFile::Integers{totals.steps,

@@ -174,6 +174,15 @@ namespace alveolus
       row.emplace_back("limited values", totals.limited);
     if (remesh_plan)
       row.emplace_back("remeshes", remesh_plan->n_remeshes());
+    if (reference_outline)
+      {
+        const std::vector<double> errors = reference_volume_errors();
+        const auto                list = model->reference_map->region_indices();
+        for (unsigned int i = 0; i < list.size(); ++i)
+          row.emplace_back("volume error at rest of " +
+                             model->regions[list[i]].name,
+                           errors[i]);
+      }
     row.emplace_back("stored energy [mJ]", mechanics_report.energy);
     const auto seconds = phase_seconds();
     for (const char *const phase : phases)

@@ -105,6 +105,8 @@ namespace alveolus
             " Newton iterations from an imbalance of " +
             number(best.imbalance, 3));
     quality = best.after;
+    if (reference_outline)
+      note_reference_volumes();
     if (totals.steps > 0)
       write_history();
     write_remesh(reason, best, areas_before, row_before, seconds_meshing);
@@ -136,6 +138,19 @@ namespace alveolus
                                        state.history,
                                        result.transfer);
     state.displacement.update_ghost_values();
+    if (fresh.reference_map)
+      {
+        const std::string objection = fresh.reference_map
+                                        ->admit(*reference_outline,
+                                                state.configuration.positions(),
+                                                state.displacement)
+                                        .objection();
+        if (!objection.empty())
+          throw RunError("Transfer",
+                         objection,
+                         "remesh earlier, or use `Transfer of deformation = "
+                         "history`");
+      }
     result.transfer.n_limited += fresh.make_history_admissible();
     state.history.trial_values = state.history.old_values;
     state.time                 = old.time;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/materials/elastic_material.h>
 #include <alveolus/scene/scene.h>
 
 #include <ostream>
@@ -50,6 +51,19 @@ namespace alveolus
       }
     for (auto &material : materials)
       material.object->initialize(dim, material.where);
+    for (const auto &region : regions)
+      if (region.deformation != "history" &&
+          dynamic_cast<const ElasticMaterial *>(
+            materials[material_of(region)].object.get()) == nullptr)
+        throw InputError(text.origin("Regions/" + region.name +
+                                     "/Transfer of deformation") +
+                           ": Regions / " + region.name +
+                           " / Transfer of deformation",
+                         "material '" + region.material + "' is a " +
+                           materials[material_of(region)].type +
+                           ", whose stress does not follow from the total "
+                           "deformation alone",
+                         "use history, or a hyperelastic material");
 
     if (regions.empty())
       throw InputError(text.origin("Regions/Names"),
@@ -163,6 +177,16 @@ namespace alveolus
                           regions[r].remodelling,
                           "A name from Remodelling / Names, or none.",
                           Patterns::Anything());
+        prm.add_parameter(
+          "Transfer of deformation",
+          regions[r].deformation,
+          "How the elastic strain of a region comes to a new mesh. history: "
+          "transferred like all history. reference map: made anew from the "
+          "nodal places X = x - u of the undeformed body, F = (dX/dx)^-1 "
+          "(elastic materials only). isochoric reference map: so its "
+          "isochoric part, while the volume change is transferred (nearly "
+          "incompressible bodies).",
+          Patterns::Selection("history|reference map|isochoric reference map"));
         prm.leave_subsection();
       }
     prm.leave_subsection();

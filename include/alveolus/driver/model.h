@@ -6,6 +6,7 @@
 #include <alveolus/scene/scene.h>
 #include <alveolus/transfer/face_transfer.h>
 #include <alveolus/transfer/nodal_transfer.h>
+#include <alveolus/transfer/reference_map.h>
 #include <alveolus/transfer/swept_transfer.h>
 #include <alveolus/transfer/trace_projection.h>
 
@@ -42,8 +43,10 @@ namespace alveolus
 
     /**
      * After a transfer: project the trace of the strain where mean dilatation
-     * is on, and bring the old records back into their admissible sets.
+     * is on, bring the old records back into their admissible sets, and make
+     * strains from the reference map where regions ask for it.
      * @return number of values that had to be limited, over all processes
+     * @throws RunError if the reference map is not invertible
      */
     unsigned int
     make_history_admissible();
@@ -75,9 +78,14 @@ namespace alveolus
     std::unique_ptr<NodalTransfer<dim>> nodal_transfer;
     std::unique_ptr<FaceTransfer<dim>>  face_transfer;
 
+    // Present only where history is transferred and some region asks for it:
+    std::unique_ptr<ReferenceMap<dim>> reference_map;
+
   private:
     void
     make_state();
+    void
+    make_reference_map();
     void
     make_rezoning();
 

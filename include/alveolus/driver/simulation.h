@@ -131,6 +131,25 @@ namespace alveolus
     bool
     finish(std::string reason);
 
+    // simulation_reference.cc, where some region has a reference map:
+    /** Keep the undeformed body, or get it from a checkpoint. */
+    void
+    begin_reference();
+    /** Of the volumes at rest, relative; in the order of the map's regions. */
+    std::vector<double>
+    reference_volume_errors() const;
+    /** A line in the log where they have become large. */
+    void
+    note_reference_volumes();
+    /**
+     * The material displacement on the mesh at @p rezoned; with a reference map
+     * that objects, @p rezoned is cut back towards @p lagrangian.
+     */
+    NodalVector
+    carry_displacement(Model<dim>        &carried,
+                       const NodalVector &lagrangian,
+                       NodalVector       &rezoned);
+
     // simulation_checkpoint.cc:
     Mesh<dim>
     first_mesh();
@@ -177,6 +196,10 @@ namespace alveolus
     std::unique_ptr<HistoryFile> remesh_file;
     // Present only where some region has a density:
     std::unique_ptr<BoneMass<dim>> bone_mass;
+    // Present only where some region has a reference map:
+    std::unique_ptr<ReferenceOutline<dim>> reference_outline;
+    std::vector<double> reference_volumes; ///< of the undeformed regions
+    std::vector<double> noted_volume_errors;
 
     std::unique_ptr<HistoryFile>      history_file;
     HistoryFile::Row                  last_row; ///< of history_file

@@ -43,6 +43,8 @@ namespace alveolus
       std::string material;
       std::string treatment   = "mean dilatation";
       std::string remodelling = "none";
+      /** history, reference map or isochoric reference map */
+      std::string deformation = "history";
     };
 
     template <class Interface>
