@@ -76,6 +76,9 @@ namespace alveolus
         throw InputError(where, "no file name is given", "set it");
       if (std::filesystem::is_directory(name, ignored))
         throw InputError(where, "'" + name + "' is a folder", "name a file");
+      // A device may have no end.
+      if (std::filesystem::is_character_file(name, ignored))
+        throw InputError(where, "'" + name + "' is a device", "name a file");
       std::ifstream file(name, std::ios::binary);
       if (!file)
         throw InputError(where,

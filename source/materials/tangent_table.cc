@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -134,8 +135,10 @@ namespace alveolus
   Points
   TangentTable::read(const std::string &file, const std::string &where)
   {
-    std::ifstream input(file);
-    if (!input)
+    std::error_code ignored;
+    std::ifstream   input(file);
+    if (!input || !(std::filesystem::is_regular_file(file, ignored) ||
+                    std::filesystem::is_fifo(file, ignored)))
       throw InputError(where,
                        "cannot open the table '" + file + "'",
                        "give the path of a file with two columns, strain and "

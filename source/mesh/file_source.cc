@@ -44,6 +44,9 @@ namespace alveolus
       MeshDescription<dim> description = read_msh<dim>(text, name);
       const MeshRepairs    repairs =
         check_description(description, allow_touching_parts);
+      this->check_number_of_cells(description.cells.size(),
+                                  n_refinements,
+                                  "Mesh / file / Refinements");
       Mesh<dim> mesh = build_mesh(description, communicator);
       if (repairs.n_unused_vertices > 0)
         mesh.description += "; " + std::to_string(repairs.n_unused_vertices) +

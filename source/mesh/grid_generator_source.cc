@@ -7,7 +7,9 @@
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold.h>
 
+#include <cstdlib>
 #include <limits>
+#include <map>
 #include <sstream>
 
 namespace alveolus
@@ -158,7 +160,11 @@ namespace alveolus
       mesh.triangulation =
         std::make_unique<dealii::parallel::distributed::Triangulation<dim>>(
           communicator);
+      check_numbers_in_arguments();
       generate(*mesh.triangulation);
+      this->check_number_of_cells(mesh.triangulation->n_active_cells(),
+                                  n_refinements,
+                                  section + " / Refinements");
       map_vertices(*mesh.triangulation);
 
       // Every process has all coarse cells, so every one sees all ids.
@@ -195,6 +201,48 @@ namespace alveolus
     std::string  arguments     = "0 : 1 : true";
     unsigned int n_refinements = 0;
     std::string map, boundary_names, boundary_pieces, region_names, point_names;
+
+    /**
+     * Functions with arguments that are numbers of cells take memory for them
+     * before anybody can look at the result.
+     */
+    void
+    check_numbers_in_arguments() const
+    {
+      // Functions and their arguments, from 0 on, that are such numbers
+      static const std::map<std::string, std::vector<unsigned int>> numbers = {
+        {"subdivided_hyper_cube", {0}},
+        {"subdivided_hyper_rectangle", {0}},
+        {"subdivided_parallelepiped", {0}},
+        {"subdivided_cylinder", {0}},
+        {"cheese", {0}},
+        {"moebius", {0}},
+        {"torus", {2}},
+        {"hyper_shell", {3}},
+        {"half_hyper_shell", {3}},
+        {"quarter_hyper_shell", {3}},
+        {"cylinder_shell", {3, 4}},
+        {"concentric_hyper_shells", {3, 5}},
+        {"hyper_cube_with_cylindrical_hole", {3, 4}},
+        {"plate_with_a_hole", {10}},
+        {"channel_with_cylinder", {1}}};
+      const auto found = numbers.find(function);
+      if (found == numbers.end())
+        return;
+      const auto list = dealii::Utilities::split_string_list(arguments, ':');
+      double     n    = 1.;
+      for (const unsigned int argument : found->second)
+        if (argument < list.size())
+          {
+            const auto parts =
+              dealii::Utilities::split_string_list(list[argument], ',');
+            for (const std::string &part : parts)
+              n *= std::abs(std::strtod(part.c_str(), nullptr));
+            if (parts.size() == 1 && function.compare(0, 16, "subdivided_hyper") == 0)
+              n = std::pow(n, dim);
+          }
+      this->check_number_of_cells(n, 0, section + " / Arguments");
+    }
 
     void
     generate(dealii::Triangulation<dim> &triangulation) const

@@ -5,6 +5,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <map>
 
@@ -169,6 +170,13 @@ namespace alveolus
         open_files.end())
       {
         problems.push_back(name + ": the file includes itself");
+        return;
+      }
+    std::error_code ignored;
+    if (std::filesystem::is_character_file(name, ignored) &&
+        !std::filesystem::equivalent(name, "/dev/stdin", ignored))
+      {
+        problems.push_back("parameter file '" + name + "' is a device");
         return;
       }
     std::ifstream file(name);

@@ -14,6 +14,7 @@ namespace alveolus
   {
     declare();
     text.apply(prm);
+    mesh_source->set_largest_number_of_cells(largest_number_of_cells);
 
     for (auto &law : interface_law_list)
       {
@@ -139,6 +140,11 @@ namespace alveolus
                       degree,
                       "Polynomial degree of displacement and geometry.",
                       Patterns::Integer(1, 2));
+    prm.add_parameter("Largest number of cells",
+                      largest_number_of_cells,
+                      "A mesh of more cells is refused before it is made: a "
+                      "slip in a number of refinements would take all memory.",
+                      Patterns::Integer(1));
     mesh_type = text.value("Mesh/Type", "");
     if (mesh_type.empty())
       throw InputError(text.file_name,

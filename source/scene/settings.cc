@@ -66,8 +66,9 @@ namespace alveolus
       for (const auto &[path, value] : all)
         if (!value.empty() && ends_with_path_parameter(path))
           {
-            std::ifstream file(value, std::ios::binary);
-            if (!file)
+            std::error_code ignored;
+            std::ifstream   file(value, std::ios::binary);
+            if (!file || !fs::is_regular_file(value, ignored))
               continue;
             boost::crc_32_type crc;
             char               buffer[4096];
@@ -83,6 +84,7 @@ namespace alveolus
     is_free(const std::string &path)
     {
       return path == "Title" || path == "Output / Directory" ||
+             path == "Mesh / Largest number of cells" ||
              path.compare(0, 11, "Checkpoint ") == 0;
     }
 

@@ -2,11 +2,16 @@
 #ifndef alveolus_mesh_mesh_source_h
 #define alveolus_mesh_mesh_source_h
 
+#include <alveolus/base/errors.h>
 #include <alveolus/base/registry.h>
 #include <alveolus/mesh/mesh.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/parameter_handler.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
 
 namespace alveolus
 {
@@ -36,6 +41,42 @@ namespace alveolus
     create(const MPI_Comm    &communicator,
            const std::string &input_directory,
            const std::string &output_directory) const = 0;
+
+    /** A mesh of more cells is refused before it is made. */
+    void
+    set_largest_number_of_cells(const unsigned int n)
+    {
+      largest_number_of_cells = n;
+    }
+
+  protected:
+    /**
+     * For implementations, to be called before memory is taken.
+     * @param n_cells as far as it is known, a product may be huge
+     * @param n_refinements how often each will be divided in all directions
+     * @param where what asks for them, for the message
+     * @throws InputError if they are more than allowed
+     */
+    void
+    check_number_of_cells(const double       n_cells,
+                          const unsigned int n_refinements,
+                          const std::string &where) const
+    {
+      const double n = std::ldexp(n_cells, dim * n_refinements);
+      if (n > largest_number_of_cells)
+        {
+          std::ostringstream found;
+          found << "asks for " << n << " cells";
+          throw InputError(where,
+                           found.str(),
+                           "lower it, or raise `Mesh / Largest number of "
+                           "cells`, which is " +
+                             std::to_string(largest_number_of_cells));
+        }
+    }
+
+  private:
+    unsigned int largest_number_of_cells = 10000000;
   };
 } // namespace alveolus
 

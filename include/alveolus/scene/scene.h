@@ -57,7 +57,8 @@ namespace alveolus
     };
 
     std::string  title;
-    unsigned int degree = 1;
+    unsigned int degree                  = 1;
+    unsigned int largest_number_of_cells = 10000000;
     std::string  mesh_type;
 
     std::unique_ptr<MeshSource<dim>>      mesh_source;
