@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Elastic bodies with closed or published solutions: on the Lagrangian mesh,
+with ALE, and with a remesh in the middle."""
+import math
+
+from book import case
+
+REFINEMENTS = "Mesh/grid generator/Refinements="
+DEGREE = "Mesh/Degree="
+FULL = "Regions/wall/Volumetric treatment=none"
+A, B = "A: displacement x [mm]", "B: displacement x [mm]"
+
+
+def steps(size):
+    return [f"Time/Initial step={size}", f"Time/Maximum step={size}"]
+
+
+def remeshed(blocks, edge, time=0.5):
+    """One remesh with edges of another length."""
+    return ["Remeshing/Type=structured", f"Remeshing/Times={time}",
+            f"Remeshing/structured/Blocks={blocks}",
+            f"Remeshing/structured/Edge length={edge:.10g}"]
+
+
+def same_answer(book, quantity, lagrangian, others, errors, source):
+    """ALE and remeshed runs on the finest mesh against the Lagrangian one:
+    the difference within the error of that mesh."""
+    for name, value in others.items():
+        book.within(f"{quantity}, {name}", lagrangian, source, value,
+                    abs(errors[-1]), "the error of the mesh")
+
+
+@case("Thick elastic cylinder")
+def thick_cylinder(book):
+    E, nu, p = 1000.0, 0.3, 1e-3
+    source = "Lamé: u = p(1+ν)/(3E) ((1−2ν) r + 4/r)"
+
+    def lame(r):
+        return p * (1 + nu) / (3 * E) * ((1 - 2 * nu) * r + 4 / r)
+
+    variants = (("degree 1", [], 1, 1.9, 2e-3),
+                ("degree 1, full integration", [FULL], 1, 1.9, 4e-3),
+                ("degree 2", [DEGREE + "2"], 0, 3.0, 5e-5))
+    for name, settings, first, least, error in variants:
+        levels = [first + i for i in book.levels(range(4), range(2))]
+        for column, r, place in ((A, 1.0, "inner"), (B, 2.0, "outer")):
+            u = [book.run("thick-cylinder", settings + [f"{REFINEMENTS}{k}"]).last(column)
+                 for k in levels]
+            book.converging(f"u {place} wall, {name} [mm]", lame(r), source, u,
+                            least, error)
+
+    # Four load steps. ALE: the cells are graded at the start, and Giuliani's
+    # rule evens them out while they are stressed.
+    u, ale, remesh = [], [], []
+    for k in book.levels((2, 3, 4), (2, 3)):
+        mesh = steps(0.25) + [f"{REFINEMENTS}{k}"]
+        u.append(book.run("thick-cylinder", mesh).last(A))
+        remesh.append(book.run("thick-cylinder", mesh
+                               + remeshed("wall", 0.8 / 2**k)).last(A))
+    errors = book.converging("u inner wall, Lagrangian [mm]", lame(1.0), source, u, 1.9)
+    book.converging("u inner wall, one remesh [mm]", lame(1.0), source, remesh, 1.7)
+    same_answer(book, "u inner wall [mm]", u[-1], {"one remesh": remesh[-1]}, errors,
+                "Lagrangian run")
+
+
+def mooney_pressure(a, shear):
+    """Pressure that draws an incompressible Mooney-Rivlin cylinder, plane
+    strain, from the radii 1 and 2 to the inner radius a: equilibrium is
+    dσ_r/dr = (σ_θ − σ_r)/r, σ_θ − σ_r = 2 (c1+c2) (l² − l⁻²), l = r/R."""
+    c, n, total = a * a - 1.0, 2000, 0.0
+    for i in range(n + 1):  # Simpson's rule in R, dr = (R/r) dR
+        R = 1.0 + i / n
+        r = math.sqrt(R * R + c)
+        l = r / R
+        weight = (1 if i in (0, n) else 4 if i % 2 else 2) / (3 * n)
+        total += weight * 2 * shear * (l * l - 1 / (l * l)) / r * (R / r)
+    return total
+
+
+@case("Thick rubber cylinder")
+def rubber_cylinder(book):
+    source = "incompressible Mooney–Rivlin: p = ∫ 2(c1+c2)(l²−l⁻²) dr/r, l = r/R"
+    exact = mooney_pressure(1.5, 0.5)
+    variants = (("degree 1", [], 1, 1.9, 1e-3),
+                ("degree 2", [DEGREE + "2"], 0, 3.0, 1e-5))
+    for name, settings, first, least, error in variants:
+        p = [mooney_pressure(1 + book.run("thick-cylinder-rubber", settings + [
+            f"{REFINEMENTS}{first + i}"]).last(A), 0.5)
+            for i in book.levels(range(3), range(2))]
+        book.converging(f"p of the radius reached, {name} [MPa]", exact, source, p,
+                        least, error)
+    locked = mooney_pressure(1 + book.run("thick-cylinder-rubber", [
+        f"{REFINEMENTS}2", FULL]).last(A), 0.5)
+    book.measured("the same with full integration, which locks [MPa]", locked,
+                  exact, source, locked / exact - 1)
+
+    # Rezoned after every step (Giuliani inside), or remeshed at half the load
+    for bulk in ("100", "1e5"):
+        u, ale, remesh = [], {1: [], 2: []}, {1: [], 2: []}
+        scheme = {1: "Transfer/Scheme=Godunov", 2: "Transfer/Scheme=limited linear"}
+        rezoned, off = "thick-cylinder-rezoned", "Rezoning/Names="
+        K = [f"Materials/rubber/Bulk modulus={bulk}"]
+        if bulk == "100":  # slightly compressible: the limit by degree 2
+            limit = book.run(rezoned, K + [DEGREE + "2", REFINEMENTS + "2", off]).last(A)
+            source = "degree 2 on 192 cells, Lagrangian"
+        else:
+            limit, source = 0.5, "incompressible: the radius 1.5 mm"
+        for k in book.levels((1, 2, 3), (1, 2)):
+            mesh = K + [f"{REFINEMENTS}{k}"]
+            u.append(book.run(rezoned, mesh + [off]).last(A))
+            for o in scheme:
+                ale[o].append(book.run(rezoned, mesh + [scheme[o]]).last(A))
+                remesh[o].append(book.run(rezoned, mesh + [off, scheme[o]] + remeshed(
+                    "wall", 1.6 / 2**k)).last(A))
+        name = f"u inner wall, κ = {bulk} MPa"
+        errors = book.converging(f"{name}, Lagrangian [mm]", limit, source, u, 1.9)
+        for o in scheme:
+            book.converging(f"{name}, ALE order {o} [mm]", limit, source, ale[o], 0.9)
+            book.converging(f"{name}, one remesh order {o} [mm]", limit, source,
+                            remesh[o], 0.9)
+        same_answer(book, name, u[-1],
+                    {f"{what} order {o} [mm]": values[o][-1]
+                     for what, values in (("ALE", ale), ("one remesh", remesh))
+                     for o in scheme}, errors, "Lagrangian run")
+
+
+def membrane(n, plane=False):
+    if plane:
+        return f"Mesh/grid generator/Arguments={n}, {n} : 0, 0 : 48, 44 : true"
+    return f"Mesh/grid generator/Arguments={n}, {n}, 1 : 0, 0, 0 : 48, 44, 1 : true"
+
+
+@case("Cook's membrane")
+def cook(book):
+    source = ("Pelteret & McBride (2016), deal.II code gallery, "
+              "doi 10.5281/zenodo.1228964")
+    tip = "tip: displacement y [mm]"
+    published = {1: {1: 5.15, 2: 8.72, 4: 12.02, 8: 13.61, 16: 14.13},
+                 2: {1: 12.19, 2: 13.83, 4: 14.22}}
+    for degree, values in published.items():
+        for n, value in values.items():
+            if book.short and n > 4 // degree:
+                continue
+            computed = book.run("cook-membrane", [membrane(n), f"{DEGREE}{degree}"]).last(tip)
+            book.near(f"tip, {n} × {n} elements of degree {degree} [mm]", value,
+                      source, computed, 0.0051, relative=False)
+    if book.short:
+        return
+    # In plane strain, where remeshers work; the tip of degree 2 as limit
+    plane = "cook-membrane-plane-strain"
+    limit = book.run(plane, [membrane(32, True), DEGREE + "2"]).last(tip)
+    source = "degree 2 on 32 × 32 elements, Lagrangian"
+    ale_rule = ["Rezoning/Names=inside", "Rezoning/inside/Type=Giuliani",
+                "Rezoning/inside/On=membrane", "Rezoning/inside/Shapes=equal"]
+    second = ["Transfer/Scheme=limited linear"]
+    u, ale, remesh = [], [], []
+    for n in (8, 16, 32):
+        u.append(book.run(plane, [membrane(n, True)]).last(tip))
+        ale.append(book.run(plane, [membrane(n, True)] + second + ale_rule).last(tip))
+        remesh.append(book.run(plane, [membrane(n, True)] + second + remeshed(
+            "membrane", 30.0 / n)).last(tip))
+    errors = book.converging("tip, plane strain, Lagrangian [mm]", limit, source, u, 1.2)
+    book.converging("tip, plane strain, ALE [mm]", limit, source, ale, 0.9)
+    book.converging("tip, plane strain, one remesh [mm]", limit, source, remesh, 0.9)
+    same_answer(book, "tip, plane strain", u[-1],
+                {"ALE [mm]": ale[-1], "one remesh [mm]": remesh[-1]}, errors,
+                "Lagrangian run")
