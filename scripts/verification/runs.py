@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import re
+import shutil
 import subprocess
 import threading
 
@@ -51,7 +52,8 @@ class Runner:
         with self.lock:
             self.numbers[name] = number = self.numbers.get(name, 0) + 1
         folder = os.path.join(self.out, "runs", name + (f"-{number}" if number > 1 else ""))
-        os.makedirs(folder, exist_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+        os.makedirs(folder)
         return folder
 
     def _call(self, command, folder):
