@@ -5,7 +5,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/fe/mapping_q.h>
+#include <deal.II/fe/mapping_q_eulerian.h>
 
 namespace alveolus
 {
@@ -39,9 +39,9 @@ namespace alveolus
     prm.add_parameter(
       "Function",
       parameters.function,
-      "Force per initial area [MPa], one expression in x, y(, z) "
-      "[mm] and t [T] for each component, separated by "
-      "semicolons.",
+      "Force per reference area [MPa], one expression in x, y(, z) "
+      "[mm] (where the material came from) and t [T] for each "
+      "component, separated by semicolons.",
       Patterns::Anything());
   }
 
@@ -64,10 +64,14 @@ namespace alveolus
 
   template <int dim>
   void
-  TractionCondition<dim>::begin_step(const State<dim> &,
-                                     const Interval &interval)
+  TractionCondition<dim>::begin_step(const State<dim> &state,
+                                     const Interval   &interval)
   {
-    time = interval.end;
+    time      = interval.end;
+    reference = state.configuration.mesh_displacement();
+    reference.zero_out_ghost_values();
+    reference -= state.displacement;
+    reference.update_ghost_values();
   }
 
 
@@ -78,15 +82,17 @@ namespace alveolus
                                      const NodalVector &,
                                      const AssemblyTarget &target)
   {
-    const auto         &configuration = state.configuration;
-    const MappingQ<dim> mapping(configuration.degree);
-    FEFaceValues<dim>   fe_values(mapping,
+    const auto &configuration = state.configuration;
+    const MappingQEulerian<dim, NodalVector> mapping(configuration.degree,
+                                                     configuration.dof_handler,
+                                                     reference);
+    FEFaceValues<dim>                        fe_values(mapping,
                                 configuration.fe,
                                 QGauss<dim - 1>(configuration.degree + 1),
                                 update_values | update_JxW_values |
                                   update_quadrature_points);
-    Vector<double>      forces(configuration.fe.n_dofs_per_cell());
-    Vector<double>      traction(dim);
+    Vector<double> forces(configuration.fe.n_dofs_per_cell());
+    Vector<double> traction(dim);
     std::vector<types::global_dof_index> dofs(forces.size());
     function->set_time(time);
     for (const auto &[cell, face] : boundary_faces(configuration, ids))
@@ -271,8 +277,9 @@ namespace alveolus
     Condition,
     TractionCondition,
     "traction",
-    "Dead load: `Function` is the force per initial area [MPa] on the "
-    "boundaries `On`.")
+    "Dead load: `Function` is the force per reference area [MPa] on the "
+    "boundaries `On` in the shape X = x - u they had where the material came "
+    "from.")
   ALVEOLUS_REGISTER_DIM(
     Condition,
     PressureCondition,

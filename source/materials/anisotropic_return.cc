@@ -23,29 +23,28 @@ namespace alveolus
 
 
   AnisotropicReturn
-  anisotropic_return(const Mandel66 &C,
-                     const Mandel66 &compliance,
-                     const Mandel6  &trial_strain,
-                     const double    yield,
-                     const double    slope,
-                     const bool      need_tangent)
+  anisotropic_return(const Mandel66    &C,
+                     const Mandel66    &compliance,
+                     const Mandel6     &trial_strain,
+                     const YieldStress &yield,
+                     const bool         need_tangent)
   {
     AnisotropicReturn result;
     result.strain = trial_strain;
     result.stress = C * trial_strain;
     Mandel6 dev   = deviator(result.stress);
     double  q     = std::sqrt(1.5 * dot(dev, dev));
-    if (q <= yield)
+    if (q <= yield.value(0.))
       {
         result.tangent = C;
         return result;
       }
 
-    // Unknown: the multiplier g. At the yield surface q = y(g) = yield + slope
-    // g, so tau = (C^{-1} + lambda P)^{-1} h_trial with lambda = 3 g/(2 y(g)).
-    // F(g) = y(g)/q(lambda(g)) - 1 grows with g, and linearly for isotropic C.
+    // Unknown: the multiplier g. At the yield surface q = y(g), so tau =
+    // (C^{-1} + lambda P)^{-1} h_trial with lambda = 3 g/(2 y(g)). F(g) =
+    // y(g)/q(lambda(g)) - 1 grows with g, and linearly for isotropic C.
     double lower = 0., upper = std::numeric_limits<double>::infinity();
-    double g = 0., y = yield;
+    double g = 0., y = yield.value(0.), slope = yield.slope(0.);
     // dq/dlambda = -(2 q/3) N : M : N with N = (3/2) dev tau/q; at g = 0, M = C
     Mandel6 N;
     for (unsigned int i = 0; i < 6; ++i)
@@ -72,8 +71,9 @@ namespace alveolus
             converged = std::abs(F) < 1e-11;
             break;
           }
-        g = next;
-        y = yield + slope * g;
+        g     = next;
+        y     = yield.value(g);
+        slope = yield.slope(g);
 
         Mandel66 matrix = compliance;
         add_deviatoric_projection(matrix, 1.5 * g / y);

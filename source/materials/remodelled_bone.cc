@@ -9,6 +9,22 @@ namespace alveolus
   using dealii::SymmetricTensor;
   using dealii::Tensor;
 
+  namespace
+  {
+    /** What the registered hardening laws are, for the manual. */
+    std::string
+    hardening_texts()
+    {
+      std::string texts;
+      for (const auto &entry : Registry<HardeningLaw>::entries())
+        texts += (texts.empty() ? "" : " ") + entry.first + ": " +
+                 entry.second.description;
+      return texts;
+    }
+  } // namespace
+
+
+
   void
   RemodelledBone::set_remodelled(const bool density, const bool fabric)
   {
@@ -40,12 +56,19 @@ namespace alveolus
                       yield_stress,
                       "Yield stress sigma_Y of undamaged bone [MPa].",
                       Double(0.));
-    prm.add_parameter(
-      "Hardening modulus",
-      hardening,
-      "Slope h_p of the yield stress of undamaged bone over the "
-      "equivalent plastic strain [MPa].",
-      Double(0.));
+    prm.add_parameter("Hardening",
+                      hardening_name,
+                      "How the yield stress of undamaged bone grows with the "
+                      "equivalent plastic strain alpha: " +
+                        hardening_texts(),
+                      dealii::Patterns::Selection(
+                        Registry<HardeningLaw>::names("|")));
+    for (const auto &entry : Registry<HardeningLaw>::entries())
+      {
+        auto &law = hardening_laws[entry.first];
+        law       = entry.second.factory();
+        law->declare_parameters(prm);
+      }
     prm.add_parameter("Initial density",
                       rho_initial,
                       "Apparent density at the beginning [g/cc].",
@@ -91,6 +114,7 @@ namespace alveolus
     this->dim = dim;
     lame      = LameConstants(young, poisson, where);
     effective = (yield_law == "effective");
+    hardening = hardening_laws.at(hardening_name).get();
     if (std::isinf(yield_stress))
       plasticity = false;
     if (plasticity && !(yield_stress > 0.))
@@ -248,16 +272,14 @@ namespace alveolus
         const double root  = effective ? std::sqrt(ratio) : 1.;
         const double scale = effective ? root * std::pow(ratio, exponent)
                                        : ratio; // of the nominal yield stress
-        const double yield = scale * (yield_stress + hardening * alpha);
-        const double q     = std::sqrt(1.5) * 2. * mu * norm;
-        if (q > yield)
+        // d gamma in the nominal strain; alpha grows by d gamma times growth
+        const double growth = effective ? root / std::pow(ratio, exponent) : 1.;
+        const YieldStress yield{*hardening, yield_stress, alpha, scale, growth};
+        const double      q = std::sqrt(1.5) * 2. * mu * norm;
+        if (q > yield.value(0.))
           {
-            // d gamma in the nominal strain; alpha grows by d gamma times
-            // growth, so that the nominal slope is scale * growth * h_p
-            const double growth =
-              effective ? root / std::pow(ratio, exponent) : 1.;
-            const double slope  = scale * growth * hardening;
-            const double dgamma = (q - yield) / (3. * mu + slope);
+            const double dgamma = yield.radial_return(q, 3. * mu);
+            const double slope  = yield.slope(dgamma);
             theta               = 1. - 3. * mu * dgamma / q;
             dyad                = (1. - theta) - 3. * mu / (3. * mu + slope);
             for (unsigned int a = 0; a < 3; ++a)
@@ -331,17 +353,19 @@ namespace alveolus
         Mandel6        dev     = trial_h;
         for (unsigned int i = 0; i < 3; ++i)
           dev[i] -= volume / 3.;
-        const double norm  = std::sqrt(dot(dev, dev));
-        const double scale = std::pow(ratio, exponent);
-        const double yield = scale * (yield_stress + hardening * alpha);
+        const double      norm  = std::sqrt(dot(dev, dev));
+        const double      scale = std::pow(ratio, exponent);
+        const YieldStress yield{
+          *hardening, yield_stress, alpha, scale, 1. / scale};
         const double q     = std::sqrt(1.5) * 2. * lame.mu * norm;
         double       theta = 1., dyad = 0.;
-        if (q > yield)
+        if (q > yield.value(0.))
           {
-            const double dalpha = (q - yield) / (3. * lame.mu + hardening);
+            const double dalpha = yield.radial_return(q, 3. * lame.mu);
+            const double slope  = yield.slope(dalpha);
             growth              = dalpha / scale;
             theta               = 1. - 3. * lame.mu * dalpha / q;
-            dyad = (1. - theta) - 3. * lame.mu / (3. * lame.mu + hardening);
+            dyad = (1. - theta) - 3. * lame.mu / (3. * lame.mu + slope);
             Mandel6 plastic; // effective plastic strain increment
             for (unsigned int i = 0; i < 6; ++i)
               plastic[i] = (1. - theta) * dev[i];
@@ -380,8 +404,8 @@ namespace alveolus
         stress = C * h;
         if (alpha_offset >= 0)
           {
-            const double yield = ratio * (yield_stress + hardening * alpha);
-            if (von_mises(from_mandel(stress)) > yield)
+            const YieldStress yield{*hardening, yield_stress, alpha, ratio};
+            if (von_mises(from_mandel(stress)) > yield.value(0.))
               {
                 const auto inverse    = power(-1.);
                 Mandel66   compliance = congruence(inverse);
@@ -392,8 +416,8 @@ namespace alveolus
                          -0.5 * lame.lambda /
                            (lame.mu * (3. * lame.lambda + 2. * lame.mu)),
                          to_mandel(inverse));
-                const AnisotropicReturn plastic = anisotropic_return(
-                  C, compliance, h, yield, ratio * hardening, need_tangent);
+                const AnisotropicReturn plastic =
+                  anisotropic_return(C, compliance, h, yield, need_tangent);
                 strain = plastic.strain;
                 stress = plastic.stress;
                 growth = plastic.multiplier;
@@ -422,6 +446,6 @@ ALVEOLUS_REGISTER(
   "1763 rho^3.2); effective strain H h H, Kirchhoff stress tau = H (C : (H h "
   "H)) H with C from `Young's modulus` E and `Poisson's ratio`; rho_u is "
   "`Undamaged density`. Yield (`Yield law` = isochoric): sqrt(3/2)|dev tau| = "
-  "(E(rho)/E)(sigma_Y + h_p alpha), sigma_Y = `Yield stress`, h_p = `Hardening "
-  "modulus`. Density and fabric T change by the remodelling law, within "
+  "(E(rho)/E)(sigma_Y + k(alpha)), sigma_Y = `Yield stress`, k by `Hardening`. "
+  "Density and fabric T change by the remodelling law, within "
   "`Minimum density`, rho_u and `Fabric bound`.")

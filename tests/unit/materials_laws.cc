@@ -510,6 +510,58 @@ TEST(RemodelledBone, UniaxialElastoplasticBar)
     }
 }
 
+// Saturating hardening: tangents against differences on all paths, the return
+// on the yield surface, and a flat law (no hardening at all).
+TEST(RemodelledBone, VoceHardening)
+{
+  for (const std::string rate : {"16.93", "0"})
+    for (const std::string law : {"isochoric", "effective"})
+      for (const bool fabric : {false, true})
+        {
+          double       error = 0., yield = 0.;
+          unsigned int n_plastic = 0;
+          for (const unsigned int dim : {2, 3})
+            for (unsigned int n = 0; n < 40; ++n)
+              {
+                const auto material = make("remodelled bone",
+                                           {{"Undamaged density", "1.9"},
+                                            {"Hardening", "Voce"},
+                                            {"Saturation", "265"},
+                                            {"Saturation rate", rate},
+                                            {"Yield law", law},
+                                            {"Yield exponent", "0"}},
+                                           dim);
+                Sample     point(*material, dim);
+                randomize(point, 0.02, fabric);
+                point.value("plastic strain") = 0.05;
+                const auto f     = unit + random_velocity(dim, 0.15);
+                error            = std::max(error, tangent_error(point, f));
+                const auto   tau = point.evaluate(f).stress;
+                const double old_alpha = 0.05;
+                point.commit();
+                const double alpha = point.value("plastic strain");
+                if (alpha == old_alpha)
+                  continue;
+                ++n_plastic;
+                const BonePoint state =
+                  as_bone(material).point(point.old.data());
+                const double surface =
+                  200. + 265. * (1. - std::exp(-std::stod(rate) * alpha));
+                const double q =
+                  law == "isochoric"
+                    ? von_mises(tau) /
+                        as_bone(material).stiffness_ratio(state.density)
+                    : von_mises(as_bone(material).effective_stress(
+                        as_bone(material).remodelling_tensor(state),
+                        state.elastic_strain));
+                yield = std::max(yield, std::abs(q / surface - 1.));
+              }
+          EXPECT_GT(n_plastic, 40u);
+          EXPECT_LT(error, 1e-7);
+          EXPECT_LT(yield, 1e-10);
+        }
+}
+
 TEST(RemodelledBone, GeneralPathEqualsClosedForm)
 {
   // A fabric of 1e-15 takes the general path, and changes nothing visible.

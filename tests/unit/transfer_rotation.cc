@@ -18,6 +18,8 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <iomanip>
+#include <sstream>
 
 using namespace dealii;
 using namespace alveolus;
@@ -52,6 +54,16 @@ namespace
     double       disc = 0., cone = 0., hump = 0.; ///< kept maxima
     unsigned int n_steps = 0, n_limited = 0;
   };
+
+  /** A number for the report of the test, from which scripts/verify takes it.
+   */
+  void
+  record(const std::string &key, const double value)
+  {
+    std::ostringstream text;
+    text << std::setprecision(16) << value;
+    testing::Test::RecordProperty(key, text.str());
+  }
 
   class Rotation
   {
@@ -254,6 +266,14 @@ namespace
                 << result.cone << ' ' << result.hump << ", minimum "
                 << result.least << ", largest drift of content " << result.drift
                 << std::endl;
+      const std::string key =
+        way + " " + (scheme == "Godunov" ? "1" : "2") + " ";
+      record(key + "error", result.error);
+      record(key + "disc", result.disc);
+      record(key + "cone", result.cone);
+      record(key + "hump", result.hump);
+      record(key + "minimum", result.least);
+      record(key + "drift", result.drift);
       return result;
     }
 

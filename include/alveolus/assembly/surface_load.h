@@ -9,9 +9,9 @@ namespace alveolus
 {
   /**
    * Dead load on boundaries: a force per area [MPa], as a function of place and
-   * time, on the area the boundary had in the initial mesh. The nodal forces
-   * follow the nodes, so this is meant for boundaries whose nodes stay with
-   * the material.
+   * time, on the reference shape X = x - u of the boundary. As it knows the
+   * material, not the mesh, rezoning and remeshing change it by no more than
+   * the transfer of u does.
    */
   template <int dim>
   class TractionCondition : public Condition<dim>
@@ -40,6 +40,7 @@ namespace alveolus
     std::set<dealii::types::boundary_id>         ids;
     std::unique_ptr<dealii::FunctionParser<dim>> function;
     double                                       time = 0.;
+    NodalVector reference; ///< X_n = x_n - u_n relative to the mesh's vertices
   };
 
   /**

@@ -3,6 +3,10 @@
 #define alveolus_materials_remodelled_bone_h
 
 #include <alveolus/materials/elastic_material.h>
+#include <alveolus/materials/hardening_law.h>
+
+#include <map>
+#include <memory>
 
 namespace alveolus
 {
@@ -24,11 +28,12 @@ namespace alveolus
    * energy (1/2) h : tau. E(rho) = E L(rho)/L(rho_u) with the density law L of
    * bone_tissue and rho_u the undamaged density, at which H = I.
    *
-   * J2 plasticity with linear isotropic hardening, in one of two variants:
+   * J2 plasticity with isotropic hardening k(alpha), linear or another
+   * registered HardeningLaw, in one of two variants:
    *  - "isochoric": in the nominal stress, f = sqrt(3/2) |dev tau| -
-   *    (E(rho)/E) (sigma_Y + h_p alpha), flow along d f/d tau;
+   *    (E(rho)/E) (sigma_Y + k(alpha)), flow along d f/d tau;
    *  - "effective": in the effective stress, with the yield stress (E(rho)/E)^m
-   *    (sigma_Y + h_p alpha) and d alpha = (E(rho)/E)^{-m} times the effective
+   *    (sigma_Y + k(alpha)) and d alpha = (E(rho)/E)^{-m} times the effective
    *    equivalent plastic strain. Its flow changes the volume once there is a
    *    fabric; ln J_p is recorded.
    *
@@ -184,7 +189,6 @@ namespace alveolus
     double poisson       = 0.3;
     bool   plasticity    = true;
     double yield_stress  = 200.;
-    double hardening     = 723.7;
     double rho_initial   = 1.3;
     double rho_undamaged = 1.3;
     double rho_full      = 1.9;
@@ -192,17 +196,21 @@ namespace alveolus
     double fabric_bound  = 3.;
     double exponent      = 0.5;
 
-    std::string yield_law = "isochoric";
+    std::string yield_law      = "isochoric";
+    std::string hardening_name = "linear";
+    /** All registered laws, as each declares its parameters. */
+    std::map<std::string, std::shared_ptr<HardeningLaw>> hardening_laws;
 
     bool density_remodelled = false;
     bool fabric_remodelled  = false;
 
     // derived by initialize()
-    unsigned int  dim = 0;
-    LameConstants lame;
-    bool          effective       = false;
-    double        reference_young = 1.; ///< L(rho_u)
-    double        initial_ratio   = 1.; ///< E(rho_initial)/E
+    unsigned int        dim = 0;
+    LameConstants       lame;
+    const HardeningLaw *hardening       = nullptr; ///< the one in use
+    bool                effective       = false;
+    double              reference_young = 1.; ///< L(rho_u)
+    double              initial_ratio   = 1.; ///< E(rho_initial)/E
     /** Offsets in the record, -1 for fields that are not stored. */
     int strain_offset = -1, alpha_offset = -1, density_offset = -1,
         fabric_offset = -1, volume_offset = -1;
@@ -229,21 +237,20 @@ namespace alveolus
 
   /**
    * Return of a trial strain onto the von Mises yield surface sqrt(3/2) |dev
-   * tau| = yield + slope * multiplier for tau = C : h with any elasticity C:
-   * h = h_trial - multiplier (3/2) dev tau/q. The scalar equation for the
-   * multiplier is solved by Newton's method within a bracket; isotropic C takes
-   * one iteration.
+   * tau| = yield(multiplier) for tau = C : h with any elasticity C: h = h_trial
+   * - multiplier (3/2) dev tau/q. The scalar equation for the multiplier is
+   * solved by Newton's method within a bracket; isotropic C and linear
+   * hardening take one iteration.
    * @param C, compliance stiffness and its inverse
-   * @param yield, slope  yield stress at the start (> 0) and hardening slope
+   * @param yield  yield stress (> 0) during the increment
    * @throws RunError if the iteration does not converge
    */
   AnisotropicReturn
-  anisotropic_return(const Mandel66 &C,
-                     const Mandel66 &compliance,
-                     const Mandel6  &trial_strain,
-                     const double    yield,
-                     const double    slope,
-                     const bool      need_tangent);
+  anisotropic_return(const Mandel66    &C,
+                     const Mandel66    &compliance,
+                     const Mandel6     &trial_strain,
+                     const YieldStress &yield,
+                     const bool         need_tangent);
 } // namespace alveolus
 
 #endif
