@@ -238,7 +238,8 @@ namespace alveolus
               dealii::Utilities::split_string_list(list[argument], ',');
             for (const std::string &part : parts)
               n *= std::abs(std::strtod(part.c_str(), nullptr));
-            if (parts.size() == 1 && function.compare(0, 16, "subdivided_hyper") == 0)
+            if (parts.size() == 1 &&
+                function.compare(0, 16, "subdivided_hyper") == 0)
               n = std::pow(n, dim);
           }
       this->check_number_of_cells(n, 0, section + " / Arguments");

@@ -6,9 +6,10 @@
 // another code, an exception, a signal, a report of a sanitizer, a time beyond
 // the limit - is a failure, whose input is kept.
 //
-// Input number i of a seed is always the same: `--first i --count 1` repeats it.
-// Inputs are read in processes of a few hundred, which are started anew after a
-// crash; at their ends LeakSanitizer, if it is built in, looks for leaks.
+// Input number i of a seed is always the same: `--first i --count 1` repeats
+// it. Inputs are read in processes of a few hundred, which are started anew
+// after a crash; at their ends LeakSanitizer, if it is built in, looks for
+// leaks.
 #include "mutations.h"
 #include "seeds.h"
 
@@ -56,6 +57,7 @@ namespace alveolus::fuzz
     {
       std::uint64_t at; ///< number of the input
       std::uint64_t accepted[5], refused[5];
+      std::uint64_t unmeshed[5]; ///< gmsh's double had no mesh of this outline
       char          problem[4000]; ///< of this input, if it ended by itself
     };
 
@@ -133,11 +135,11 @@ namespace alveolus::fuzz
       for (std::string name = "0/"; blocks.has(name + "kind");
            name             = std::to_string(seeds.size()) + "/")
         seeds.push_back({static_cast<Kind>(blocks.integer(name + "kind")),
-                         blocks.text(name + "name"),
-                         blocks.text(name + "file"),
-                         blocks.text(name + "content"),
-                         blocks.text(name + "scene"),
-                         blocks.text(name + "parameter")});
+                                     blocks.text(name + "name"),
+                                     blocks.text(name + "file"),
+                                     blocks.text(name + "content"),
+                                     blocks.text(name + "scene"),
+                                     blocks.text(name + "parameter")});
       return seeds;
     }
 
@@ -197,23 +199,24 @@ namespace alveolus::fuzz
             i = batch_end;
           }
 
-        std::cout << "kind         accepted   refused\n";
+        std::cout << "kind         accepted   refused  unmeshed\n";
         std::uint64_t n = 0;
         for (const Kind kind : all_kinds)
           if (by_kind.count(kind) != 0)
             {
               const auto k = static_cast<unsigned int>(kind);
               char       line[80];
-              std::snprintf(line,
-                            sizeof(line),
-                            "%-10s %10llu %9llu\n",
-                            name_of(kind).c_str(),
-                            static_cast<unsigned long long>(
-                              progress->accepted[k]),
-                            static_cast<unsigned long long>(
-                              progress->refused[k]));
+              std::snprintf(
+                line,
+                sizeof(line),
+                "%-10s %10llu %9llu %9llu\n",
+                name_of(kind).c_str(),
+                static_cast<unsigned long long>(progress->accepted[k]),
+                static_cast<unsigned long long>(progress->refused[k]),
+                static_cast<unsigned long long>(progress->unmeshed[k]));
               std::cout << line;
-              n += progress->accepted[k] + progress->refused[k];
+              n += progress->accepted[k] + progress->refused[k] +
+                   progress->unmeshed[k];
             }
         std::cout << n << " of " << options.count
                   << " inputs ended as they should, " << n_failures
@@ -240,14 +243,13 @@ namespace alveolus::fuzz
         random.number();
         auto kind = by_kind.begin();
         std::advance(kind, i % by_kind.size());
-        const auto       &seeds   = kind->second;
-        const Seed       &seed    = seeds[random.below(seeds.size())];
-        const Seed       &other   = seeds[random.below(seeds.size())];
-        const std::string content = kind->first == Kind::checkpoint ?
-                                      mutated_blocks(seed.content, random) :
-                                      mutated_text(seed.content,
-                                                   other.content,
-                                                   random);
+        const auto       &seeds = kind->second;
+        const Seed       &seed  = seeds[random.below(seeds.size())];
+        const Seed       &other = seeds[random.below(seeds.size())];
+        const std::string content =
+          kind->first == Kind::checkpoint
+            ? mutated_blocks(seed.content, random)
+            : mutated_text(seed.content, other.content, random);
         return {&seed, content};
       }
 
@@ -259,8 +261,8 @@ namespace alveolus::fuzz
         setenv("PATH", (work + "/bin").c_str(), 1);
         for (std::uint64_t i = begin; i < end; ++i)
           {
-            progress->at         = i;
-            progress->problem[0] = 0;
+            progress->at               = i;
+            progress->problem[0]       = 0;
             const auto [seed, content] = input(i);
             const std::string folder   = work + "/in/checkpoint";
             fs::create_directories(folder);
@@ -283,7 +285,7 @@ namespace alveolus::fuzz
                 program.scene = seed->scene;
                 program.sets.push_back(seed->parameter + "=" + file);
               }
-            const auto        before = std::chrono::steady_clock::now();
+            const auto         before = std::chrono::steady_clock::now();
             std::ostringstream message;
             set_time_limit(options.time_limit);
             const int code = run_program(program, MPI_COMM_WORLD, message);
@@ -299,6 +301,10 @@ namespace alveolus::fuzz
               ++progress->accepted[k];
             else if (code == 2 && message.str().size() > 20)
               ++progress->refused[k];
+            else if (code == 1 &&
+                     message.str().find(": the mesher 'gmsh' ended with exit "
+                                        "code 1") != std::string::npos)
+              ++progress->unmeshed[k];
             else
               {
                 std::snprintf(progress->problem,
@@ -328,9 +334,9 @@ namespace alveolus::fuzz
         if (!WIFSIGNALED(status))
           return "exit code " + std::to_string(WEXITSTATUS(status));
         const int signal = WTERMSIG(status);
-        return signal == SIGVTALRM || signal == SIGALRM ?
-                 "takes too long" :
-                 std::string("signal ") + strsignal(signal);
+        return signal == SIGVTALRM || signal == SIGALRM
+                 ? "takes too long"
+                 : std::string("signal ") + strsignal(signal);
       }
 
       void
@@ -365,8 +371,9 @@ main(int argc, char **argv)
   namespace po = boost::program_options;
   alveolus::fuzz::Options options;
   po::options_description all("fuzz [options]");
-  all.add_options()("help", "this text")(
-    "count", po::value(&options.count), "how many inputs")(
+  all.add_options()("help", "this text")("count",
+                                         po::value(&options.count),
+                                         "how many inputs")(
     "first", po::value(&options.first), "number of the first one")(
     "seed", po::value(&options.seed), "of the random numbers")(
     "batch", po::value(&options.batch), "inputs for each process")(
@@ -375,8 +382,9 @@ main(int argc, char **argv)
     "parameters, mesh, outline, table or checkpoint")(
     "time-limit",
     po::value(&options.time_limit),
-    "for one input [s of processor time]")(
-    "work", po::value(&options.work), "folder for files, emptied first")(
+    "for one input [s of processor time]")("work",
+                                           po::value(&options.work),
+                                           "folder for files, emptied first")(
     "keep", po::value(&options.kept), "folder for inputs that failed")(
     "verbose", po::bool_switch(&options.verbose), "every outcome to said.txt");
   po::variables_map given;

@@ -102,7 +102,9 @@ namespace alveolus::fuzz
             text.erase(at, 1 + random.below(8));
             break;
           default:
-            text.insert(at, 1 + random.below(4), "\0\n #$=/\\\xff"[random.below(9)]);
+            text.insert(at,
+                        1 + random.below(4),
+                        "\0\n #$=/\\\xff"[random.below(9)]);
         }
     }
 
@@ -145,8 +147,7 @@ namespace alveolus::fuzz
           case 2:
             text.replace(line.begin, line.length, moved);
             break;
-          case 3:
-            {
+            case 3: {
               // A part of some lines of another file
               if (others.empty())
                 return;

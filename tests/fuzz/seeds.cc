@@ -115,13 +115,13 @@ namespace alveolus::fuzz
             seeds.push_back(
               {Kind::parameters, name, "scene.prm", flat(text), "", ""});
             std::ostringstream flat_text(flat(text));
-            seeds.push_back({Kind::parameters,
-                             name + " (all)",
-                             "scene.prm",
-                             resolved(ParameterText::parse(flat_text.str(),
-                                                           scene)),
-                             "",
-                             ""});
+            seeds.push_back(
+              {Kind::parameters,
+               name + " (all)",
+               "scene.prm",
+               resolved(ParameterText::parse(flat_text.str(), scene)),
+               "",
+               ""});
           }
         catch (const InputError &)
           {
@@ -142,7 +142,7 @@ namespace alveolus::fuzz
       options.output = work + "/" + name;
       options.sets   = sets;
       options.sets.push_back("Output/Fields=false");
-      options.quiet = true;
+      options.quiet  = true;
       const int code = run_program(options, MPI_COMM_WORLD, std::cerr);
       if (code != 0)
         throw RunError(scene, "ended with " + std::to_string(code), "");
@@ -238,8 +238,8 @@ namespace alveolus::fuzz
       add(Kind::outline,
           "meshes/incisor-" + part + ".csv",
           "prm/incisor.prm",
-          "Mesh/tooth in socket/" + std::string(part == "tooth" ? "Tooth" : "Bone") +
-            " outline file");
+          "Mesh/tooth in socket/" +
+            std::string(part == "tooth" ? "Tooth" : "Bone") + " outline file");
     add(Kind::table,
         "prm/tables/ligament-table-2.csv",
         "prm/verification/ligament-uniaxial.prm",
