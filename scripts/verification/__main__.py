@@ -8,7 +8,11 @@ import sys
 
 import book
 import runs
-import elasticity  # noqa: F401  (registers its cases)
+import elasticity  # noqa: F401  (these register their cases)
+import plasticity  # noqa: F401
+import remeshing  # noqa: F401
+import rotation  # noqa: F401
+import transfers  # noqa: F401
 
 
 def main():

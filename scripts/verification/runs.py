@@ -100,6 +100,20 @@ class Runner:
             raise CannotRun(f"{folder}: exit code {code}, see terminal.txt")
         return Result(folder, code)
 
+    def history_bytes(self, scene, settings=()):
+        """Bytes of history per cell of each region, as --validate says."""
+        name = os.path.join(ROOT, "prm", "verification", scene + ".prm")
+        folder = self._folder(scene + "-validated")
+        command = [self.binary, "--validate", "--output", folder]
+        for setting in settings:
+            command += ["--set", setting]
+        if self._call(command + [name], folder) != 0:
+            raise CannotRun(f"{folder}: not valid, see terminal.txt")
+        with open(os.path.join(folder, "terminal.txt"), encoding="utf-8") as file:
+            found = re.findall(r"region\s+([^:]+):.* (\d+) bytes of history per cell",
+                               file.read())
+        return {region: int(count) for region, count in found}
+
     def unit_test(self, name, tests="*", environment=()):
         """Numbers that the unit test NAME records: by 'Suite.Test', then by
         key. Numbers of a test that failed are there, too."""
