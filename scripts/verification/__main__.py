@@ -8,7 +8,8 @@ import sys
 
 import book
 import runs
-import elasticity  # noqa: F401  (these register their cases)
+import academic  # noqa: F401  (these register their cases)
+import elasticity  # noqa: F401
 import plasticity  # noqa: F401
 import remeshing  # noqa: F401
 import rotation  # noqa: F401
@@ -18,6 +19,7 @@ import transfers  # noqa: F401
 def main():
     parser = argparse.ArgumentParser(prog="verify", add_help=True)
     parser.add_argument("--short", action="store_true")
+    parser.add_argument("--long", action="store_true")
     parser.add_argument("--document", action="store_true")
     parser.add_argument("--only", default="", metavar="REGEX")
     parser.add_argument("binary", nargs="?",
@@ -32,9 +34,9 @@ def main():
     os.makedirs(out, exist_ok=True)
     runner = runs.Runner(arguments.binary, out)
 
-    chosen = [(name, function) for name, function, short in book.CASES
+    chosen = [(name, function) for name, function, short, long in book.CASES
               if re.search(arguments.only, name)
-              and (short or not arguments.short)]
+              and (short or not arguments.short) and (arguments.long or not long)]
     if not chosen:
         print(f"verify: no case matches '{arguments.only}'", file=sys.stderr)
         return 2
@@ -45,7 +47,7 @@ def main():
         pages = book.Book(name, runner, arguments.short)
         try:
             function(pages)
-        except (runs.CannotRun, KeyError, ValueError) as error:
+        except (runs.CannotRun, KeyError, IndexError, ValueError) as error:
             broken.append(name)
             pages.add("could not be run", "", "", "", None, None,
                       str(error).replace("\n", " "), False)

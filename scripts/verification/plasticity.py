@@ -94,10 +94,12 @@ def necking(book):
     f_rigid = width * math.sqrt(4 / 3) * yield_stress(alpha) / math.exp(e_rigid)
     book.near("largest load per mm of the integrated bar [N]", f_rigid,
               "Considère, rigid-plastic: dτ/dε = τ", f_max, 5e-3)
-    book.near("its logarithmic strain", e_rigid, "Considère, rigid-plastic", e_max, 3e-2)
+    book.measured("its logarithmic strain", e_max, e_rigid, "Considère, rigid-plastic",
+                  e_max / e_rigid - 1)
 
     # The program on a uniform bar: three step sizes, before and at the maximum
-    even = ["Mesh/grid generator/Map=x; y",
+    even = ["Mesh/grid generator/Map=x; y", "Mesh/grid generator/Arguments=2, 1 : 0, 0 : "
+            "26.667, 6.413 : true",
             "Mesh/grid generator/Point names=neck: 0, 6.413; end: 26.667, 6.413"]
     column = "grip: force x [N]"
 
@@ -105,7 +107,7 @@ def necking(book):
         return ([math.log(1 + 4.26672 * t / half) for t in run.history["time [T]"]],
                 [abs(f) for f in run.history[column]])
 
-    ks = book.levels((0, 1, 2, 3), (0, 1))
+    ks = book.levels((0, 1, 2, 3, 4, 5), (0, 1, 2))
     runs = [curve(book.run("necking", even + steps(0.02 / 2**k))) for k in ks]
     source = "rate equations of the uniform bar, Runge–Kutta"
     at = math.log(1 + 4.26672 * 0.3 / half)

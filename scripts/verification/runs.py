@@ -28,6 +28,8 @@ class Result:
         with open(os.path.join(self.folder, name), newline="",
                   encoding="utf-8") as file:
             rows = list(csv.reader(file))
+        if len(rows) < 2:
+            raise CannotRun(f"{self.folder}: {name} has no row")
         return {title: [float(row[i]) if row[i] else float("nan")
                         for row in rows[1:]]
                 for i, title in enumerate(rows[0])}

@@ -65,22 +65,23 @@ def slotted_disc(book):
 @case("History width")
 def width(book):
     """Bytes that a cell of four points keeps, old and trial values."""
-    sources = {"thick-cylinder": ("elastic (Hencky)", 4),
-               "thick-cylinder-rubber": ("Mooney–Rivlin", 4),
-               "cook-membrane-plane-strain": ("neo-Hookean", 4),
-               "ligament-uniaxial": ("ligament", 4),
-               "necking": ("plastic, not remodelled", 5),
-               "academic-tied-undamaged": ("bone, not remodelled", 5),
-               "academic-omega0": ("bone, density only", 6),
-               "academic-tied": ("bone, density and fabric", 10)}
-    for scene, (name, values) in sources.items():
+    # Numbers of a point, points of a cell
+    sources = {"thick-cylinder": ("elastic (Hencky), plane strain", 4, 4),
+               "thick-cylinder-rubber": ("Mooney–Rivlin, plane strain", 4, 4),
+               "cook-membrane-plane-strain": ("neo-Hookean, plane strain", 4, 4),
+               "cook-membrane": ("neo-Hookean, 3D", 6, 8),
+               "ligament-uniaxial": ("ligament (Valanis–Landel), 3D", 6, 8),
+               "necking": ("elastoplastic, not remodelled", 5, 4),
+               "academic-tied-undamaged": ("bone, not remodelled", 5, 4),
+               "academic-omega0": ("bone, density remodelled", 6, 4),
+               "academic-tied": ("bone, density and fabric remodelled", 10, 4)}
+    for scene, (name, values, points) in sources.items():
         settings = []
         if scene == "academic-omega0":
             scene = "academic-tied"
             settings = ["Remodelling/mechanostat/Degree of anisotropy=0"]
-        bytes_of = book.runner.history_bytes(scene, settings)
-        for region, count in bytes_of.items():
-            book.add(f"{name} ({scene}: {region}) [bytes per cell]", float(8 * 2 * 4 * values),
-                     f"{values} numbers × 4 points × 2 states × 8 bytes", float(count),
-                     count - 8.0 * 2 * 4 * values, None, "equal",
-                     count == 8 * 2 * 4 * values)
+        exact = 8.0 * 2 * points * values
+        for region, count in book.runner.history_bytes(scene, settings).items():
+            book.add(f"{name} ({scene}: {region}) [bytes per cell]", exact,
+                     f"{values} numbers × {points} points × 2 states × 8 bytes",
+                     float(count), count - exact, None, "equal", count == exact)
