@@ -78,7 +78,7 @@ def largest(x, y):
     return x1 - b / (2 * a), y1 - b * b / (4 * a)
 
 
-@case("Necking of a bar in plane strain")
+@case("Necking of a bar in plane strain", short=False)
 def necking(book):
     e, tau = uniform(0.15, 4000)
     half, width = 26.667, 6.413

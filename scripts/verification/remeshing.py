@@ -9,7 +9,7 @@ def times(start, end, n=20):
         f"{start + (end - start) * i / n:.10g}" for i in range(n))
 
 
-@case("Twenty remeshes in a row")
+@case("Twenty remeshes in a row", short=False)
 def twenty(book):
     # A uniform state: the bar while it is drawn, elastically and plastically
     uniform = ["Mesh/grid generator/Map=x; y", "Mesh/grid generator/Arguments=20, 10 : "

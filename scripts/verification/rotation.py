@@ -32,7 +32,7 @@ def rigid_rotation(book):
                            abs(run.last("rest: greatest Hencky strain"))), 1e-12)
 
 
-@case("Stressed disc turned by 360°")
+@case("Stressed disc turned by 360°", short=False)
 def disc(book):
     source = "u = ∇ Re(x+iy)³, turned"
     point, mean = "strain: error", "strain: error of cell means"
@@ -70,7 +70,7 @@ def disc(book):
                         errors, 0.9 * o, errors=errors)
 
 
-@case("Twisted ring turned by 360°")
+@case("Twisted ring turned by 360°", short=False)
 def ring(book):
     moment, mean = "outer: moment [N mm]", "strain: error of cell means"
     exact = 2 * math.pi * 2 * 1000 / 2.6 * 1e-4 / 3

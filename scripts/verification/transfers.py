@@ -5,7 +5,7 @@ from book import case, order
 WAYS = {"swept": "same connectivity", "overlap": "between meshes"}
 
 
-@case("Transfer")
+@case("Transfer", short=False)
 def suite(book):
     found = book.runner.unit_test(
         "transfer_second_order", "LimitedLinear.*",
@@ -39,7 +39,7 @@ def suite(book):
                  None, None, "passes", found[f"LimitedLinear.{name}"]["passed"])
 
 
-@case("Slotted disc, cone and hump")
+@case("Slotted disc, cone and hump", short=False)
 def slotted_disc(book):
     levels = (2, 3) if book.short else (2, 3, 4)
     runs = [book.runner.unit_test("transfer_rotation", "*", (
