@@ -9,12 +9,12 @@ import re
 COLUMNS = ("case", "quantity", "exact", "source", "computed", "error", "order",
            "target", "verdict")
 
-CASES = []  # (name, function, whether in the short book)
+CASES = []  # (name, function, in the short book, only on request)
 
 
-def case(name, short=True):
+def case(name, short=True, long=False):
     def register(function):
-        CASES.append((name, function, short))
+        CASES.append((name, function, short, long))
         return function
     return register
 

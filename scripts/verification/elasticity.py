@@ -65,7 +65,7 @@ def thick_cylinder(book):
                 ("degree 1, full integration", [FULL], 1, 1.9, 4e-3),
                 ("degree 2", [DEGREE + "2"], 0, 3.0, 5e-5))
     for name, settings, first, least, error in variants:
-        levels = [first + i for i in book.levels(range(4), range(2))]
+        levels = [first + i for i in book.levels(range(4), range(3))]
         for column, r, place in ((A, 1.0, "inner"), (B, 2.0, "outer")):
             u = [book.run("thick-cylinder", pressure + settings + [f"{REFINEMENTS}{k}"]).last(column)
                  for k in levels]
@@ -125,6 +125,41 @@ def rubber_cylinder(book):
                {"ALE": [rules] * len(ks),
                 "one remesh": [["Rezoning/Names="] + remeshed("wall", 0.8 / 2**k)
                                for k in ks]})
+
+
+@case("Ring of two bonded materials", short=False)
+def two_materials(book):
+    p, a, c, b = 1e-4, 1.0, 1.5, 2.0
+    inner, outer = (1000.0, 0.3), (100.0, 0.4)
+
+    def u(material, ri, ro, pi, po, r):
+        E, nu = material
+        area = ro * ro - ri * ri
+        return (1 + nu) / E * ((1 - 2 * nu) * (pi * ri * ri - po * ro * ro) / area * r
+                               + (pi - po) * ri * ri * ro * ro / (area * r))
+
+    # u is linear in the pressure q of the interface, and the same on both sides
+    def gap(q):
+        return u(inner, a, c, p, q, c) - u(outer, c, b, q, 0.0, c)
+    q = -gap(0.0) * p / (gap(p) - gap(0.0))
+    exact = {"A": u(inner, a, c, p, q, a), "I": u(inner, a, c, p, q, c),
+             "B": u(outer, c, b, q, 0.0, b)}
+    source = "Lamé for both materials, continuity of u and σ_r at the interface"
+    ks = book.levels((0, 1, 2), (0, 1))
+
+    def mesh(k):
+        return [f"Mesh/grid generator/Arguments={8 * 2**k}, {12 * 2**k} : -1, 0 : 1, 1 : true"]
+    for point, place in (("A", "inner wall"), ("I", "interface"), ("B", "outer wall")):
+        column = f"{point}: displacement x [mm]"
+        if point == "B":
+            values = [book.run("two-material-ring", mesh(k)).last(column) for k in ks]
+            book.converging(f"u {place} [mm]", exact[point], source, values, 1.9)
+            continue
+        # The remesh divides both regions anew, the cells of ALE are graded at
+        # first and evened out under load
+        family(book, f"u {place} [mm]", "two-material-ring", column, exact[point], source,
+               [mesh(k) for k in ks],
+               {"one remesh": [remeshed("core, shell", 0.1 / 2**k) for k in ks]})
 
 
 def membrane(n, plane=False):

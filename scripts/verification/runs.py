@@ -28,6 +28,8 @@ class Result:
         with open(os.path.join(self.folder, name), newline="",
                   encoding="utf-8") as file:
             rows = list(csv.reader(file))
+        if len(rows) < 2:
+            raise CannotRun(f"{self.folder}: {name} has no row")
         return {title: [float(row[i]) if row[i] else float("nan")
                         for row in rows[1:]]
                 for i, title in enumerate(rows[0])}
@@ -99,6 +101,20 @@ class Runner:
         if code not in (0, 1) or not os.path.exists(os.path.join(folder, "summary.json")):
             raise CannotRun(f"{folder}: exit code {code}, see terminal.txt")
         return Result(folder, code)
+
+    def history_bytes(self, scene, settings=()):
+        """Bytes of history per cell of each region, as --validate says."""
+        name = os.path.join(ROOT, "prm", "verification", scene + ".prm")
+        folder = self._folder(scene + "-validated")
+        command = [self.binary, "--validate", "--output", folder]
+        for setting in settings:
+            command += ["--set", setting]
+        if self._call(command + [name], folder) != 0:
+            raise CannotRun(f"{folder}: not valid, see terminal.txt")
+        with open(os.path.join(folder, "terminal.txt"), encoding="utf-8") as file:
+            found = re.findall(r"region\s+([^:]+):.* (\d+) bytes of history per cell",
+                               file.read())
+        return {region: int(count) for region, count in found}
 
     def unit_test(self, name, tests="*", environment=()):
         """Numbers that the unit test NAME records: by 'Suite.Test', then by
