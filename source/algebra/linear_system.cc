@@ -13,6 +13,11 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_vector.h>
 
+#include <Epetra_MultiVector.h>
+#include <Teuchos_ParameterList.hpp>
+
+#include <array>
+
 namespace alveolus
 {
   using namespace dealii;
@@ -107,18 +112,30 @@ namespace alveolus
 
 
 
-    /** Trilinos' matrix with MUMPS or with CG and algebraic multigrid. */
+    /**
+     * Trilinos' matrix with MUMPS, or with CG or GMRES and algebraic multigrid:
+     * smoothed aggregation (ML) over nodes, with the rigid motions of the mesh
+     * as near null space. Where the iteration fails, MUMPS is asked instead,
+     * which is counted.
+     */
+    template <int dim>
     class DistributedSystem : public LinearSystem
     {
     public:
-      template <int dim>
+      enum class Method
+      {
+        direct,
+        cg,
+        gmres
+      };
+
       DistributedSystem(const DoFHandler<dim>           &dof_handler,
                         const AffineConstraints<double> &constraints,
-                        const bool                       multigrid,
+                        const Method                     method,
                         const double                     tolerance,
                         const DofGroups                 &couplings)
         : constraints(constraints)
-        , multigrid(multigrid)
+        , method(method)
         , tolerance(tolerance)
       {
         const MPI_Comm communicator = dof_handler.get_communicator();
@@ -134,10 +151,8 @@ namespace alveolus
         matrix.reinit(owned, owned, pattern, communicator);
         right_hand_side.reinit(owned, communicator);
         solution.reinit(owned, communicator);
-        if (multigrid)
-          DoFTools::extract_constant_modes(dof_handler,
-                                           ComponentMask(dim, true),
-                                           constant_modes);
+        if (method != Method::direct)
+          find_nodes(dof_handler);
       }
 
       void
@@ -160,6 +175,25 @@ namespace alveolus
       }
 
       void
+      set_positions(const NodalVector &positions) override
+      {
+        if (method == Method::direct)
+          return;
+        Tensor<1, dim> middle;
+        for (unsigned int n = 0; n < nodes.size(); ++n)
+          for (unsigned int c = 0; c < dim; ++c)
+            {
+              places[n][c] = positions(nodes[n][c]);
+              middle[c] += places[n][c];
+            }
+        const MPI_Comm communicator = positions.get_mpi_communicator();
+        middle = Utilities::MPI::sum(middle, communicator) /
+                 Utilities::MPI::sum(1. * nodes.size(), communicator);
+        for (auto &x : places)
+          x -= middle;
+      }
+
+      void
       solve(NodalVector &x, const NodalVector &b) override
       {
         for (const auto i : owned)
@@ -170,46 +204,11 @@ namespace alveolus
         right_hand_side.compress(VectorOperation::insert);
         solution.compress(VectorOperation::insert);
 
-        const double  norm = right_hand_side.l2_norm();
-        SolverControl control(5000, tolerance * norm + 1e-300);
-        try
-          {
-            if (multigrid && norm > 0.)
-              {
-                TrilinosWrappers::PreconditionAMG::AdditionalData data;
-                data.elliptic              = true;
-                data.constant_modes        = constant_modes;
-                data.smoother_sweeps       = 2;
-                data.aggregation_threshold = 0.02;
-                TrilinosWrappers::PreconditionAMG preconditioner;
-                preconditioner.initialize(matrix, data);
-                TrilinosWrappers::SolverCG solver(control);
-                solver.solve(matrix, solution, right_hand_side, preconditioner);
-                iterations = control.last_step();
-              }
-            else
-              {
-                TrilinosWrappers::SolverDirect::AdditionalData data(
-                  false, "Amesos_Mumps");
-                TrilinosWrappers::SolverDirect solver(control, data);
-                solver.solve(matrix, solution, right_hand_side);
-              }
-          }
-        catch (const SolverControl::NoConvergence &failure)
-          {
-            throw RunError("linear solver " + name(),
-                           "residual " + std::to_string(failure.last_residual) +
-                             " after " + std::to_string(failure.last_step) +
-                             " iterations from " + std::to_string(norm),
-                           "try `Solver / Linear solver = MUMPS`");
-          }
-        catch (const ExceptionBase &failure)
-          {
-            throw RunError(
-              "linear solver " + name(),
-              "the matrix could not be factorised",
-              "check that the boundary conditions hold every body");
-          }
+        const double norm = right_hand_side.l2_norm();
+        iterations        = 1;
+        rest              = 0.;
+        if (method == Method::direct || !(norm > 0.) || !iterate(norm))
+          factorise(norm);
 
         constraints.distribute(solution);
         x.zero_out_ghost_values();
@@ -218,28 +217,169 @@ namespace alveolus
         x.update_ghost_values();
       }
 
+      bool
+      is_iterative() const override
+      {
+        return method != Method::direct;
+      }
+
       unsigned int
       n_iterations() const override
       {
         return iterations;
       }
 
+      double
+      residual() const override
+      {
+        return rest;
+      }
+
+      unsigned int
+      n_replaced() const override
+      {
+        return replaced;
+      }
+
       std::string
       name() const override
       {
-        return multigrid ? "CG with ML" : "MUMPS";
+        return method == Method::direct ? "MUMPS" :
+               method == Method::cg     ? "CG with ML" :
+                                          "GMRES with ML";
       }
 
     private:
+      void
+      find_nodes(const DoFHandler<dim> &dof_handler)
+      {
+        const auto                          &fe = dof_handler.get_fe();
+        std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+        std::vector<bool>                    found(owned.n_elements(), false);
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (!cell->is_artificial())
+            {
+              cell->get_dof_indices(dofs);
+              for (unsigned int k = 0; k < dofs.size() / dim; ++k)
+                {
+                  std::array<types::global_dof_index, dim> node;
+                  for (unsigned int c = 0; c < dim; ++c)
+                    node[c] = dofs[fe.component_to_system_index(c, k)];
+                  if (!owned.is_element(node[0]) ||
+                      found[owned.index_within_set(node[0])])
+                    continue;
+                  found[owned.index_within_set(node[0])] = true;
+                  nodes.push_back(node);
+                }
+            }
+        places.resize(nodes.size());
+      }
+
+      /** Translations and (linearised) rotations at the nodes, one a column. */
+      void
+      rigid_motions(Epetra_MultiVector &modes) const
+      {
+        modes.PutScalar(0.);
+        for (unsigned int n = 0; n < nodes.size(); ++n)
+          {
+            const Tensor<1, dim> &x = places[n];
+            for (unsigned int c = 0; c < dim; ++c)
+              {
+                const auto row      = owned.index_within_set(nodes[n][c]);
+                modes[c][row]       = 1.;
+                unsigned int column = dim;
+                for (unsigned int a = 0; a < dim; ++a)
+                  for (unsigned int b = 0; b < a; ++b, ++column)
+                    if (c == a)
+                      modes[column][row] = x[b];
+                    else if (c == b)
+                      modes[column][row] = -x[a];
+              }
+          }
+      }
+
+      /** Solve by iteration; false if it does not get there. */
+      bool
+      iterate(const double norm)
+      {
+        TrilinosWrappers::PreconditionAMG::AdditionalData data;
+        data.elliptic              = true;
+        data.smoother_sweeps       = 2;
+        data.aggregation_threshold = 0.02;
+        Teuchos::ParameterList              parameters;
+        std::unique_ptr<Epetra_MultiVector> unused;
+        data.set_parameters(parameters, unused, matrix);
+        constexpr int      n_modes = dim * (dim + 1) / 2;
+        Epetra_MultiVector modes(matrix.trilinos_matrix().RowMap(), n_modes);
+        rigid_motions(modes);
+        parameters.set("PDE equations", dim);
+        parameters.set("null space: type", "pre-computed");
+        parameters.set("null space: dimension", n_modes);
+        parameters.set("null space: vectors", modes.Values());
+
+        SolverControl control(max_iterations, tolerance * norm);
+        try
+          {
+            TrilinosWrappers::PreconditionAMG preconditioner;
+            preconditioner.initialize(matrix, parameters);
+            if (method == Method::cg)
+              TrilinosWrappers::SolverCG(control).solve(matrix,
+                                                        solution,
+                                                        right_hand_side,
+                                                        preconditioner);
+            else
+              TrilinosWrappers::SolverGMRES(
+                control,
+                TrilinosWrappers::SolverGMRES::AdditionalData(false, 100))
+                .solve(matrix, solution, right_hand_side, preconditioner);
+          }
+        catch (const ExceptionBase &)
+          {
+            // Among them: no convergence, an indefinite matrix in CG
+            ++replaced;
+            return false;
+          }
+        iterations = control.last_step();
+        rest       = control.last_value() / norm;
+        return true;
+      }
+
+      void
+      factorise(const double norm)
+      {
+        SolverControl control(1, tolerance * norm + 1e-300);
+        try
+          {
+            TrilinosWrappers::SolverDirect::AdditionalData data(false,
+                                                                "Amesos_Mumps");
+            TrilinosWrappers::SolverDirect solver(control, data);
+            solver.solve(matrix, solution, right_hand_side);
+          }
+        catch (const ExceptionBase &failure)
+          {
+            throw RunError(
+              "linear solver " + name(),
+              "the matrix could not be factorised",
+              "check that the boundary conditions hold every body");
+          }
+      }
+
+      static constexpr unsigned int max_iterations = 500;
+
       const AffineConstraints<double> &constraints;
-      const bool                       multigrid;
+      const Method                     method;
       const double                     tolerance;
       IndexSet                         owned;
       TrilinosWrappers::SparseMatrix   matrix;
       TrilinosWrappers::MPI::Vector    right_hand_side;
       TrilinosWrappers::MPI::Vector    solution;
-      std::vector<std::vector<bool>>   constant_modes;
-      unsigned int                     iterations = 1;
+      /** Degrees of freedom of the owned nodes, and where these are [mm],
+       * counted from the middle of all. */
+      std::vector<std::array<types::global_dof_index, dim>> nodes;
+      std::vector<Tensor<1, dim>>                           places;
+      unsigned int                                          iterations = 1;
+      unsigned int                                          replaced   = 0;
+      double                                                rest       = 0.;
     };
   } // namespace
 
@@ -263,8 +403,15 @@ namespace alveolus
       return std::make_unique<SerialSystem>(dof_handler,
                                             constraints,
                                             couplings);
-    return std::make_unique<DistributedSystem>(
-      dof_handler, constraints, type == "multigrid", tolerance, couplings);
+    using Distributed = DistributedSystem<dim>;
+    return std::make_unique<Distributed>(
+      dof_handler,
+      constraints,
+      type == "multigrid"       ? Distributed::Method::cg :
+      type == "multigrid GMRES" ? Distributed::Method::gmres :
+                                  Distributed::Method::direct,
+      tolerance,
+      couplings);
   }
 
   template std::unique_ptr<LinearSystem>

@@ -326,6 +326,15 @@ namespace alveolus
     residuals << std::scientific << std::setprecision(2);
     for (const double r : mechanics_report.residuals)
       residuals << ' ' << r;
+    if (model->equilibrium->solves_by_iteration())
+      residuals << "; " << mechanics_report.n_linear_iterations
+                << " linear iterations in " << mechanics_report.n_iterations
+                << " solutions, relative residual at most "
+                << mechanics_report.linear_residual;
+    if (mechanics_report.n_direct_instead > 0)
+      residuals << "; the iteration failed " << mechanics_report.n_direct_instead
+                << " times and MUMPS took over, try `Solver / Linear solver = "
+                   "multigrid GMRES` or MUMPS";
     log.note("t = " + number(state.time, 8) + " T accepted, residuals" +
              residuals.str());
   }

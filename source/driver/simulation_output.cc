@@ -149,6 +149,9 @@ namespace alveolus
       }
     row.emplace_back("time step [T]", model->state->last_step);
     row.emplace_back("Newton iterations", mechanics_report.n_iterations);
+    if (model->equilibrium->solves_by_iteration())
+      row.emplace_back("linear iterations",
+                       mechanics_report.n_linear_iterations);
     row.emplace_back("rejected attempts", rejected_attempts);
     row.emplace_back("smallest scaled Jacobian",
                      quality.smallest_scaled_jacobian);

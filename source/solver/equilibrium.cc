@@ -46,8 +46,13 @@ namespace alveolus
     prm.add_parameter("Linear solver",
                       linear_solver,
                       "automatic is UMFPACK on one process, MUMPS on several; "
-                      "multigrid is CG with Trilinos ML.",
-                      Patterns::Selection("automatic|UMFPACK|MUMPS|multigrid"));
+                      "multigrid is CG with algebraic multigrid (Trilinos ML, rigid "
+                      "motions as near null space), for large meshes in 3D; "
+                      "multigrid GMRES for matrices that are not symmetric. "
+                      "Where the iteration fails, MUMPS takes over, which the "
+                      "log tells.",
+                      Patterns::Selection("automatic|UMFPACK|MUMPS|multigrid|"
+                                          "multigrid GMRES"));
     prm.add_parameter(
       "Linear tolerance",
       linear_tolerance,
@@ -227,6 +232,9 @@ namespace alveolus
     assembler.begin_step(interval);
     set_constraints(interval);
     update_system();
+    if (system->is_iterative())
+      system->set_positions(state.configuration.positions());
+    const unsigned int n_replaced = system->n_replaced();
     const auto &owned = state.configuration.locally_owned;
     NodalVector correction(state.configuration.make_vector());
     NodalVector trial(state.configuration.make_vector());
@@ -326,6 +334,9 @@ namespace alveolus
         }
         ++report.n_iterations;
         report.n_linear_iterations += system->n_iterations();
+        report.linear_residual =
+          std::max(report.linear_residual, system->residual());
+        report.n_direct_instead = system->n_replaced() - n_replaced;
         if (lift)
           {
             correction.zero_out_ghost_values();

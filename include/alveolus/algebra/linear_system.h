@@ -45,6 +45,34 @@ namespace alveolus
     virtual void
     solve(NodalVector &x, const NodalVector &b) = 0;
 
+    /** Where the nodes are [mm]; multigrid takes their rigid motions as near
+     * null space. Without it rotations are unknown to it. */
+    virtual void
+    set_positions(const NodalVector & /*positions*/)
+    {}
+
+    /** Whether solutions are found by iteration. */
+    virtual bool
+    is_iterative() const
+    {
+      return false;
+    }
+
+    /** Residual of the last solve relative to the right hand side; 0 for a
+     * direct solver. */
+    virtual double
+    residual() const
+    {
+      return 0.;
+    }
+
+    /** Solves so far in which the iteration failed and MUMPS took over. */
+    virtual unsigned int
+    n_replaced() const
+    {
+      return 0;
+    }
+
     /** Iterations of the last solve; 1 for a direct solver. */
     virtual unsigned int
     n_iterations() const
@@ -63,7 +91,8 @@ namespace alveolus
   /**
    * Make the system for a DoFHandler and its homogeneous constraints.
    * @param type `automatic` (UMFPACK on one process, MUMPS on several),
-   *        `UMFPACK`, `MUMPS` or `multigrid` (CG with Trilinos ML)
+   *        `UMFPACK`, `MUMPS`, `multigrid` (CG with Trilinos ML) or `multigrid
+   *        GMRES`
    * @param tolerance relative residual of iterative solvers
    * @param couplings entries of the matrix beyond those of the cells, among
    *        relevant dofs

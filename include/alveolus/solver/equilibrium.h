@@ -19,6 +19,8 @@ namespace alveolus
     std::vector<double> residuals; ///< L1 norm over the sum of internal forces
     unsigned int        n_line_search = 0; ///< halvings of the Newton step
     unsigned int        n_linear_iterations = 0;
+    double              linear_residual     = 0.; ///< relative, the largest
+    unsigned int        n_direct_instead    = 0;  ///< failed iterations
     unsigned int        n_augmentations     = 0;  ///< of multipliers
     double              energy              = 0.; ///< stored [mJ (per mm)]
     /** L1 norm of the residual before the step over the internal forces. */
@@ -99,6 +101,12 @@ namespace alveolus
     assembly() const
     {
       return assembler;
+    }
+
+    bool
+    solves_by_iteration() const
+    {
+      return system->is_iterative();
     }
 
     std::string

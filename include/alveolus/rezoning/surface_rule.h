@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef alveolus_rezoning_surface_rule_h
+#define alveolus_rezoning_surface_rule_h
+
+#include <alveolus/rezoning/rezoning_rule.h>
+#include <alveolus/rezoning/surface_patch.h>
+
+namespace alveolus
+{
+  /**
+   * Nodes inside surfaces of a body are smoothed on the surface they lie on:
+   * harmonic displacement between the rim and the nodes that earlier rules set,
+   * then, unless the surface is part of the mesh only, back onto the surface
+   * through the Lagrangian positions (SurfacePatch).
+   * The surface is replicated on every process; three dimensions only.
+   */
+  class SurfaceRule : public RezoningRule<3>
+  {
+  public:
+    using Stage = typename RezoningRule<3>::Stage;
+
+    void
+    declare_parameters(dealii::ParameterHandler &prm) override;
+    Stage
+    stage(const NamedSets<3> &names, const std::string &where) const override;
+    void
+    attach(const Nodes<3>         &nodes,
+           const NodalVector      &positions,
+           const std::set<NodeId> &taken,
+           const std::string      &where) override;
+    void
+    apply(const Nodes<3>    &nodes,
+          const NodalVector &start,
+          const NodalVector &lagrangian,
+          NodalVector       &proposed,
+          RezoningReport    &report) const override;
+    const std::vector<NodeId> &
+    touched_nodes() const override
+    {
+      return touched;
+    }
+
+  private:
+    std::vector<std::string>  on;
+    bool                      stay = true;
+    std::vector<SurfacePatch> patches;
+    std::vector<NodeId>       touched;
+  };
+} // namespace alveolus
+
+#endif
