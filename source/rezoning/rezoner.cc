@@ -30,10 +30,7 @@ namespace alveolus
     const auto        &mesh         = nodes.configuration.mesh;
     const MPI_Comm     communicator = nodes.configuration.communicator();
     const unsigned int none         = rules.size();
-    if (mesh.triangulation->has_hanging_nodes() && !rules.empty())
-      throw InputError(rules.front().first,
-                       "the mesh has hanging nodes",
-                       "rezone meshes that are refined as a whole only");
+    hanging = std::make_unique<HangingNodes<dim>>(nodes.configuration);
 
     const auto stage = [&](const auto &rule) {
       return rule.second->stage(mesh.names, rule.first);
@@ -122,7 +119,10 @@ namespace alveolus
     NodalVector proposed(lagrangian);
     proposed.update_ghost_values();
     for (const auto &rule : rules)
-      rule.second->apply(nodes, start, lagrangian, proposed, report);
+      {
+        rule.second->apply(nodes, start, lagrangian, proposed, report);
+        hanging->distribute(proposed);
+      }
 
     NodalVector trial(proposed);
     trial.update_ghost_values();
@@ -146,6 +146,7 @@ namespace alveolus
                 : x + report.fraction * (proposed.local_element(i) - x);
           }
         trial.update_ghost_values();
+        hanging->distribute(trial);
       }
 
     double motion = 0.;

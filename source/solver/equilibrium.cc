@@ -75,6 +75,7 @@ namespace alveolus
     , parameters(parameters)
     , timer(timer)
     , assembler(state, regions, conditions)
+    , hanging(state.configuration)
     , residual_vector(state.configuration.make_vector())
     , lifted(state.configuration.make_vector())
   {
@@ -130,8 +131,16 @@ namespace alveolus
       condition->prescribe(state, interval, increments);
     prescribed.reinit(state.configuration.locally_relevant);
     held.reinit(state.configuration.locally_relevant);
+    if (!hanging.empty())
+      {
+        prescribed.merge(hanging.constraints());
+        held.merge(hanging.constraints());
+      }
     for (const auto &[dof, value] : increments.all())
       {
+        // A hanging node goes where its neighbours take it (3D boundaries).
+        if (!hanging.empty() && hanging.constraints().is_constrained(dof))
+          continue;
         prescribed.add_line(dof);
         prescribed.set_inhomogeneity(dof, value.first);
         held.add_line(dof);
@@ -181,6 +190,9 @@ namespace alveolus
                                         matrix ? system.get() : nullptr,
                                         lift ? &prescribed : nullptr,
                                         lift ? &lifted : nullptr});
+    hanging.condense(residual_vector);
+    if (lift)
+      hanging.condense(lifted);
     if (held_imbalance != nullptr)
       residual_vector.add(-held_imbalance->part, held_imbalance->forces);
     return result;
@@ -271,6 +283,7 @@ namespace alveolus
           if (prescribed.is_constrained(i))
             increment(i) = prescribed.get_inhomogeneity(i);
         increment.update_ghost_values();
+        hanging.distribute(increment);
         result = assemble(increment, true, false);
         lift   = !result.good;
       }
@@ -344,6 +357,7 @@ namespace alveolus
               if (prescribed.is_constrained(i))
                 correction(i) = prescribed.get_inhomogeneity(i);
             correction.update_ghost_values();
+            hanging.distribute(correction);
           }
 
         // Backtracking: the full step is assembled with its matrix at once,

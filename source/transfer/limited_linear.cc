@@ -95,9 +95,9 @@ namespace alveolus
                             const unsigned int    stride,
                             std::vector<double>  &correction) const
   {
-    const SubCells<dim>   &cells    = step.cells;
-    constexpr unsigned int n_faces  = SubCells<dim>::faces_per_sub_cell;
-    unsigned int           n_fields = 0;
+    const SubCells<dim> &cells    = step.cells;
+    const unsigned int   n_faces  = cells.faces_per_sub_cell;
+    unsigned int         n_fields = 0;
     for (unsigned int r = 0; r < step.store.n_regions(); ++r)
       n_fields =
         std::max<unsigned int>(n_fields, step.store.layout(r).fields.size());
@@ -115,10 +115,12 @@ namespace alveolus
           std::copy(own, own + size, value);
           for (unsigned int i = 0; i < n_faces; ++i)
             {
-              const auto         incidence = cells.incidences(s)[i];
-              const double       gain      = incidence.side == 0
-                                               ? step.swept[incidence.face]
-                                               : -step.swept[incidence.face];
+              const auto incidence = cells.incidences(s)[i];
+              if (incidence.face == SubCells<dim>::none)
+                continue;
+              const double       gain = incidence.side == 0
+                                          ? step.swept[incidence.face]
+                                          : -step.swept[incidence.face];
               const unsigned int other =
                 cells.faces()[incidence.face].sub_cell[1 - incidence.side];
               if (gain > 0. && other != SubCells<dim>::none)
@@ -149,6 +151,11 @@ namespace alveolus
       bool        any   = false;
       for (unsigned int i = 0; i < n_faces; ++i)
         {
+          if (faces[i].face == SubCells<dim>::none)
+            {
+              std::fill_n(parts.begin() + i * stride, layout.size, 0.);
+              continue;
+            }
           const double scale =
             (faces[i].side == 0 ? 1. : -1.) / step.volume_after[s];
           for (unsigned int v = 0; v < layout.size; ++v)
@@ -176,8 +183,9 @@ namespace alveolus
             {
               sum[v] = low[s * stride + v];
               for (unsigned int i = 0; i < n_faces; ++i)
-                sum[v] +=
-                  factor[faces[i].face * n_fields + a] * parts[i * stride + v];
+                if (faces[i].face != SubCells<dim>::none)
+                  sum[v] += factor[faces[i].face * n_fields + a] *
+                            parts[i * stride + v];
             }
           if (limiter.admits(sum.data(), level[s * n_fields + a]))
             continue;

@@ -31,10 +31,12 @@ namespace alveolus
   NodalTransfer<dim>::NodalTransfer(const Configuration<dim> &configuration)
     : configuration(configuration)
     , cells(configuration)
+    , hanging(configuration)
   {
-    const auto        &triangulation = *configuration.mesh.triangulation;
-    const unsigned int n_owned =
-      configuration.mesh_displacement().locally_owned_size();
+    const auto &triangulation = *configuration.mesh.triangulation;
+    const auto &partitioner =
+      *configuration.mesh_displacement().get_partitioner();
+    const unsigned int n_owned = partitioner.locally_owned_size();
     boundary_face.resize(triangulation.n_active_cells());
 
     using Cell = typename Triangulation<dim>::active_cell_iterator;
@@ -64,7 +66,10 @@ namespace alveolus
         {
           const unsigned int c     = cell->active_cell_index();
           const unsigned int entry = cells.local_entries(c, i)[0];
-          if (entry >= n_owned)
+          // The value of a hanging node follows from the others.
+          if (entry >= n_owned ||
+              (!hanging.empty() && hanging.constraints().is_constrained(
+                                     partitioner.local_to_global(entry))))
             continue;
           Node &node = by_entry[entry];
           node.candidates.push_back({c, i});
@@ -238,6 +243,7 @@ namespace alveolus
               Utilities::MPI::sum(evaluate(current, from, to, next, report),
                                   communicator);
             next.update_ghost_values();
+            hanging.distribute(next);
             for (unsigned int i = 0; i < n_local; ++i)
               current.local_element(i) = next.local_element(i);
             from.swap(to);
@@ -247,6 +253,7 @@ namespace alveolus
 
         for (unsigned int i = 0; i < n_local; ++i)
           u.local_element(i) = current.local_element(i);
+        hanging.distribute(u);
         report.n_subcycles = parts;
         report.n_moved     = Utilities::MPI::sum(report.n_moved, communicator);
         report.n_extrapolated =

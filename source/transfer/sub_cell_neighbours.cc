@@ -49,6 +49,37 @@ namespace alveolus
       std::sort(axes.begin(), axes.end());
       Key<dim> key{};
       key[0] = cell->vertex_index(origin);
+
+      // In the middle of an edge or face that finer cells divide is a vertex.
+      // (Only degree 1 has hanging nodes, and only middles, then.)
+      const auto is_end = [&](const unsigned int vertex) {
+        bool found = vertex == key[0];
+        for (const auto &axis : axes)
+          found = found || vertex == axis.first;
+        return found;
+      };
+      if (axes.size() == 1 && n_1d == 2)
+        for (const unsigned int l : cell->line_indices())
+          if (cell->line(l)->has_children() &&
+              is_end(cell->line(l)->vertex_index(0)) &&
+              is_end(cell->line(l)->vertex_index(1)))
+            {
+              key[0] = cell->line(l)->child(0)->vertex_index(1);
+              return key;
+            }
+      if constexpr (dim == 3)
+        if (axes.size() == 2 && n_1d == 2)
+          for (const unsigned int f : cell->face_indices())
+            {
+              unsigned int n_ends = 0;
+              for (unsigned int v = 0; v < 4; ++v)
+                n_ends += is_end(cell->face(f)->vertex_index(v));
+              if (n_ends == 3 && cell->face(f)->has_children())
+                {
+                  key[0] = cell->face(f)->isotropic_child(0)->vertex_index(3);
+                  return key;
+                }
+            }
       for (unsigned int a = 0; a < axes.size(); ++a)
         {
           key[2 * a + 1] = axes[a].first;

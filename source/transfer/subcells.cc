@@ -46,15 +46,19 @@ namespace alveolus
     const std::function<unsigned int(unsigned int)> &region)
     : nodes(configuration)
     , n_points(Utilities::pow(configuration.degree + 1, dim))
+    , faces_per_sub_cell(configuration.mesh.triangulation->has_hanging_nodes()
+                           ? 2 * dim * Utilities::pow(2, dim - 1)
+                           : 2 * dim)
     , n_cells(configuration.mesh.triangulation->n_active_cells())
     , n_1d(configuration.degree + 1)
     , n_tangential(Utilities::pow(configuration.degree + 1, dim - 1))
   {
-    if (configuration.mesh.triangulation->has_hanging_nodes())
-      throw RunError("Transfer",
-                     "the mesh has hanging nodes",
-                     "transfer on the same connectivity needs a mesh without "
-                     "local refinement");
+    if (configuration.degree > 1 &&
+        configuration.mesh.triangulation->has_hanging_nodes())
+      throw InputError("Mesh / Degree",
+                       "it is " + std::to_string(configuration.degree) +
+                         " and the mesh has hanging nodes",
+                       "set it to 1, or refine the mesh as a whole");
 
     const QGauss<1> gauss(n_1d);
     breaks_1d.push_back(0.);
@@ -221,6 +225,40 @@ namespace alveolus
         return result;
       };
 
+    const unsigned int width = faces_per_sub_cell / (2 * dim);
+    // All faces of sub-cells of face f of a cell that is finer than its
+    // neighbour: they belong to one sub-cell of that.
+    const auto hang = [&](const Cell        &fine,
+                          const unsigned int f,
+                          const Cell        &coarse,
+                          const unsigned int g) {
+      Point<dim>         middle;
+      const unsigned int n_vertices = fine->face(f)->n_vertices();
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        middle += fine->face(f)->vertex(v) / n_vertices;
+      unsigned int best     = 0;
+      double       distance = std::numeric_limits<double>::max();
+      for (unsigned int s = 0; s < n_tangential; ++s)
+        if (centre(coarse, g, s).distance(middle) < distance)
+          {
+            best     = s;
+            distance = centre(coarse, g, s).distance(middle);
+          }
+      const bool         upper = f % 2 == 1;
+      const unsigned int there =
+        coarse->active_cell_index() * n_points +
+        point_index(g / 2, g % 2 == 1 ? n_1d - 1 : 0, best);
+      const unsigned int c = fine->active_cell_index();
+      for (unsigned int t = 0; t < n_tangential; ++t)
+        drafts.push_back(
+          {{{{c * n_points + point_index(f / 2, upper ? n_1d - 1 : 0, t),
+              there}},
+            c,
+            form_index(f / 2, upper ? n_1d : 0, t),
+            upper ? 1. : -1.},
+           {{f * width, g * width + t}}});
+    };
+
     for (const auto &cell :
          configuration.mesh.triangulation->active_cell_iterators())
       {
@@ -239,7 +277,7 @@ namespace alveolus
                                  c,
                                  form_index(d, plane, t),
                                  1.},
-                                {{2 * d + 1, 2 * d}}});
+                                {{(2 * d + 1) * width, 2 * d * width}}});
 
         for (const unsigned int f : cell->face_indices())
           {
@@ -248,9 +286,13 @@ namespace alveolus
             const unsigned int layer = upper ? n_1d - 1 : 0;
             const unsigned int plane = upper ? n_1d : 0;
             const double       sign  = upper ? 1. : -1.;
-            const bool         open =
+            const bool         finer =
+              !cell->at_boundary(f) && cell->face(f)->has_children();
+            const bool open =
               !cell->at_boundary(f) &&
-              region(cell->neighbor(f)->active_cell_index()) == region(c);
+              region((finer ? cell->neighbor_child_on_subface(f, 0)
+                            : cell->neighbor(f))
+                       ->active_cell_index()) == region(c);
             if (!open)
               {
                 for (unsigned int t = 0; t < n_tangential; ++t)
@@ -259,7 +301,28 @@ namespace alveolus
                       c,
                       form_index(d, plane, t),
                       sign},
-                     {{f, none}}});
+                     {{f * width, none}}});
+                continue;
+              }
+
+            // Between cells of different size the finer one gives faces and
+            // geometry.
+            if (finer)
+              {
+                for (unsigned int k = 0; k < cell->face(f)->n_children(); ++k)
+                  {
+                    const Cell child = cell->neighbor_child_on_subface(f, k);
+                    if (!child->is_locally_owned())
+                      hang(child, cell->neighbor_of_neighbor(f), cell, f);
+                  }
+                continue;
+              }
+            if (cell->neighbor_is_coarser(f))
+              {
+                hang(cell,
+                     f,
+                     cell->neighbor(f),
+                     cell->neighbor_of_coarser_neighbor(f).first);
                 continue;
               }
 
@@ -296,14 +359,14 @@ namespace alveolus
                 if (first)
                   drafts.push_back(
                     {{{{here, there}}, c, form_index(d, plane, t), sign},
-                     {{f, g}}});
+                     {{f * width, g * width}}});
                 else
                   drafts.push_back(
                     {{{{there, here}},
                       c_other,
                       form_index(g / 2, other_up ? n_1d : 0, best),
                       other_up ? 1. : -1.},
-                     {{g, f}}});
+                     {{g * width, f * width}}});
               }
           }
       }
@@ -327,10 +390,10 @@ namespace alveolus
       }
 
     for (const unsigned int c : owned)
-      for (unsigned int i = c * n_points * faces_per_sub_cell;
-           i < (c + 1) * n_points * faces_per_sub_cell;
-           ++i)
-        AssertThrow(all_incidences[i].face != none, ExcInternalError());
+      for (unsigned int s = c * n_points; s < (c + 1) * n_points; ++s)
+        for (unsigned int f = 0; f < 2 * dim; ++f)
+          AssertThrow(incidences(s)[f * width].face != none,
+                      ExcInternalError());
   }
 
   template <int dim>

@@ -63,6 +63,8 @@ namespace alveolus
           const auto *faces = cells.incidences(s);
           for (unsigned int i = 0; i < cells.faces_per_sub_cell; ++i)
             {
+              if (faces[i].face == SubCells<dim>::none)
+                continue;
               const double gain = faces[i].side == 0
                                     ? work.swept[faces[i].face]
                                     : -work.swept[faces[i].face];
@@ -139,6 +141,8 @@ namespace alveolus
             double             swept  = 0.;
             for (unsigned int i = 0; i < cells.faces_per_sub_cell; ++i)
               {
+                if (faces[i].face == SubCells<dim>::none)
+                  continue;
                 const unsigned int f    = faces[i].face;
                 const double       sign = faces[i].side == 0 ? 1. : -1.;
                 const double       gain = sign * work.swept[f];

@@ -2,6 +2,7 @@
 #ifndef alveolus_rezoning_rezoner_h
 #define alveolus_rezoning_rezoner_h
 
+#include <alveolus/mesh/hanging_nodes.h>
 #include <alveolus/rezoning/rezoning_rule.h>
 
 #include <memory>
@@ -20,7 +21,8 @@ namespace alveolus
    *
    * A node belongs to the first rule, by stage, that touches it. Two rules of
    * one stage that set the same component of the same node contradict each
-   * other. Within a stage a rule builds on what the rules above it proposed.
+   * other. After every rule hanging nodes are put back into the middle of what
+   * they hang on. Within a stage a rule builds on what the rules above it proposed.
    */
   template <int dim>
   class Rezoner
@@ -58,6 +60,7 @@ namespace alveolus
   private:
     std::vector<std::pair<std::string, std::unique_ptr<RezoningRule<dim>>>>
       rules;
+    std::unique_ptr<HangingNodes<dim>> hanging; ///< since attach()
   };
 } // namespace alveolus
 

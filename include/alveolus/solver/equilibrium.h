@@ -4,6 +4,7 @@
 
 #include <alveolus/assembly/mechanics_assembler.h>
 #include <alveolus/base/verdict.h>
+#include <alveolus/mesh/hanging_nodes.h>
 
 #include <deal.II/base/timer.h>
 
@@ -144,6 +145,7 @@ namespace alveolus
     dealii::AffineConstraints<double> held;       ///< the same, homogeneous
     std::unique_ptr<LinearSystem>     system;
     std::vector<unsigned int> coupled; ///< revisions the system was made for
+    HangingNodes<dim>         hanging;
     NodalVector               residual_vector;
     NodalVector               lifted;
     const Imbalance          *held_imbalance = nullptr;

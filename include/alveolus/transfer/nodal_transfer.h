@@ -3,6 +3,7 @@
 #define alveolus_transfer_nodal_transfer_h
 
 #include <alveolus/mesh/configuration.h>
+#include <alveolus/mesh/hanging_nodes.h>
 #include <alveolus/transfer/cell_nodes.h>
 
 #include <vector>
@@ -71,6 +72,7 @@ namespace alveolus
 
     const Configuration<dim> &configuration;
     const CellNodes<dim>      cells;
+    const HangingNodes<dim>   hanging;
     std::vector<Node>         nodes;
     /** By active cell: which faces are at the domain boundary. */
     std::vector<std::array<bool, 2 * dim>> boundary_face;

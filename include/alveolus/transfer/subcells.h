@@ -25,7 +25,10 @@ namespace alveolus
    * agree to round-off (geometric conservation law). Nothing here depends on
    * the number of processes, to the last bit.
    *
-   * Cells without hanging nodes only.
+   * Where a cell of degree 1 has finer neighbours, each of its sub-cells there
+   * has the whole face of one of them: the faces of its 2^(dim-1) sub-cells.
+   * Their geometry is that of the finer cell, the same as long as hanging nodes
+   * are in the middle of what they hang on.
    */
   template <int dim>
   class SubCells
@@ -53,11 +56,10 @@ namespace alveolus
       unsigned int side; ///< which one of Face::sub_cell is the viewer
     };
 
-    static constexpr unsigned int faces_per_sub_cell = 2 * dim;
-
     /**
      * @param region region index by active cell index (owned and ghost cells)
-     * @throws RunError on a mesh with hanging nodes (on all processes)
+     * @throws InputError on a mesh with hanging nodes and degree above 1 (on
+     *         all processes)
      * Collective.
      */
     SubCells(const Configuration<dim>                        &configuration,
@@ -92,7 +94,9 @@ namespace alveolus
 
     /**
      * The faces_per_sub_cell faces of an owned sub-cell: lower and upper one in
-     * each unit direction.
+     * each unit direction. On a mesh with hanging nodes 2^(dim-1) places for
+     * each of them, of which all are taken where the neighbour is finer and
+     * else the first one; the others have Incidence::face `none`.
      */
     const Incidence *
     incidences(const unsigned int sub_cell) const
@@ -145,6 +149,8 @@ namespace alveolus
 
     const CellNodes<dim> nodes;
     const unsigned int   n_points; ///< sub-cells per cell
+    /** Places for faces: 2 dim, with hanging nodes times 2^(dim-1). */
+    const unsigned int faces_per_sub_cell;
 
   private:
     /**
