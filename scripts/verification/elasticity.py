@@ -42,6 +42,8 @@ def family(book, name, scene, column, exact, source, levels, variants,
                             least_order)[-1] * abs(exact)
     for variant, extra in variants.items():
         for o, scheme in SCHEMES.items():
+            if book.short and o == 1:
+                continue
             found = values([more + [scheme] for more in extra])
             book.converging(f"{name}, {variant}, transfer order {o}", exact,
                             source, found, min(0.9 * o, least_order))
