@@ -46,6 +46,7 @@ class Book:
         return self.runner.run(scene, settings, **options)
 
     def levels(self, full, short):
+        """What the short book takes instead of the full list."""
         return short if self.short else full
 
     def add(self, quantity, exact, source, computed, error, order, target, met):
