@@ -10,13 +10,17 @@ namespace alveolus
   using namespace dealii;
 
   template <int dim>
-  Model<dim>::Model(std::shared_ptr<Scene<dim>> scene_object,
-                    Mesh<dim>                   mesh_object,
-                    TimerOutput                &timer)
+  Model<dim>::Model(
+    std::shared_ptr<Scene<dim>>                                   scene_object,
+    Mesh<dim>                                                     mesh_object,
+    TimerOutput                                                  &timer,
+    const std::function<NodalVector(const Configuration<dim> &)> &positions)
     : scene(std::move(scene_object))
     , mesh(std::move(mesh_object))
   {
     make_state();
+    if (positions)
+      state->configuration.set_positions(positions(state->configuration));
     for (auto &condition : scene->conditions)
       {
         condition.object->choose_interface_law(scene->interface_laws,

@@ -133,7 +133,8 @@ namespace alveolus
           {
             const std::string due =
               remesh_plan->due(model->state->time,
-                               quality.smallest_scaled_jacobian);
+                               quality.smallest_scaled_jacobian,
+                               totals.steps);
             if (!due.empty())
               {
                 if (scene.checkpoint.write)

@@ -74,8 +74,7 @@ namespace alveolus
           save_mesh(model->mesh, blocks);
         else if (n_remeshes > 0)
           throw RunError("checkpoint",
-                         "the mesh of the last remesh has curved manifolds or "
-                         "local refinement",
+                         "the mesh of the last remesh has curved manifolds",
                          "set `Checkpoint / Write = false` with this remesher");
       }
 

@@ -28,6 +28,8 @@ namespace alveolus
     std::vector<RemeshCandidate<dim>> candidates;
     try
       {
+        if (!scene.remesher->indicator().empty())
+          scene.remesher->tell(cell_means(scene.remesher->indicator()));
         candidates = scene.remesher->candidates(old.configuration,
                                                 scene.output_directory,
                                                 name);
@@ -53,6 +55,12 @@ namespace alveolus
               }
             catch (const RunError &error)
               {
+                log.note("  not taken: " + std::string(error.what()));
+                continue;
+              }
+            catch (const InputError &error)
+              {
+                // E.g. a rule that does not fit the new mesh
                 log.note("  not taken: " + std::string(error.what()));
                 continue;
               }
@@ -119,6 +127,48 @@ namespace alveolus
 
 
   template <int dim>
+  std::vector<double>
+  Simulation<dim>::cell_means(const std::string &quantity) const
+  {
+    const State<dim>        &state   = *model->state;
+    const HistoryStore<dim> &history = state.history;
+    const unsigned int  n_cells = model->mesh.triangulation->n_active_cells();
+    std::vector<double> result(n_cells, 0.), trial;
+    MaterialResponse    response;
+    const Tensor<2, 3>  at_rest(unit_symmetric_tensor<3>());
+    for (const auto &cell : model->mesh.triangulation->active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const unsigned int   c      = cell->active_cell_index();
+          const HistoryLayout &layout = history.layout(history.region(c));
+          const Material      &material =
+            *model->regions[history.region(c)].material;
+          const int density = layout.offset("density");
+          trial.resize(layout.size);
+          for (unsigned int q = 0; q < history.n_points; ++q)
+            {
+              const double *record = history.old_record(c, q);
+              if (quantity == "density")
+                {
+                  result[c] +=
+                    density < 0 ? 0. : record[density] / history.n_points;
+                  continue;
+                }
+              material.evaluate(at_rest, record, trial.data(), false, response);
+              result[c] += response.energy / material.volume_ratio(record) /
+                           history.n_points;
+            }
+        }
+    std::vector<std::size_t> begin(n_cells + 1);
+    for (unsigned int c = 0; c <= n_cells; ++c)
+      begin[c] = c;
+    history.ghost_exchange().update(result, begin);
+    return result;
+  }
+
+
+
+  template <int dim>
   typename Simulation<dim>::Remeshed
   Simulation<dim>::try_candidate(RemeshCandidate<dim>        candidate,
                                  const OverlapTransfer<dim> &overlap)
@@ -129,7 +179,8 @@ namespace alveolus
     result.description = candidate.description;
     result.model       = std::make_unique<Model<dim>>(scene.another(),
                                                 std::move(candidate.mesh),
-                                                timer);
+                                                timer,
+                                                candidate.positions);
     Model<dim> &fresh  = *result.model;
     State<dim> &state  = *fresh.state;
     result.transfer    = overlap.transfer(state.configuration, state.history);
@@ -138,6 +189,7 @@ namespace alveolus
                                        state.history,
                                        result.transfer);
     state.displacement.update_ghost_values();
+    HangingNodes<dim>(state.configuration).distribute(state.displacement);
     if (fresh.reference_map)
       {
         const std::string objection = fresh.reference_map

@@ -5,7 +5,9 @@
 #include <deal.II/grid/manifold.h>
 #include <deal.II/grid/tria.h>
 
+#include <algorithm>
 #include <cstring>
+#include <set>
 #include <sstream>
 
 namespace alveolus
@@ -108,6 +110,75 @@ namespace alveolus
         }
       return elements;
     }
+
+    /** Whether all coarse cells are divided equally often. */
+    template <class Triangulation>
+    bool
+    is_uniform(const Triangulation &triangulation)
+    {
+      std::uint64_t n = triangulation.n_cells(0);
+      for (unsigned int level = 1; level < triangulation.n_global_levels();
+           ++level)
+        n *= 1u << Triangulation::dimension;
+      return n == triangulation.n_global_active_cells();
+    }
+
+    /** Ids of all active cells, one a line, ascending (collective). */
+    template <class Triangulation>
+    std::string
+    leaves_of(const Triangulation &triangulation)
+    {
+      std::vector<std::string> own, all;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          own.push_back(cell->id().to_string());
+      for (const auto &part :
+           Utilities::MPI::all_gather(triangulation.get_communicator(), own))
+        all.insert(all.end(), part.begin(), part.end());
+      std::sort(all.begin(), all.end());
+      std::string text;
+      for (const std::string &id : all)
+        text += id + '\n';
+      return text;
+    }
+
+    /** Divide coarse cells until the active ones are those (collective). */
+    template <class Triangulation>
+    void
+    divide(Triangulation &triangulation, const std::string &leaves)
+    {
+      // Coarse cell and path: divided if that is how a leaf's path begins
+      std::set<std::pair<std::string, std::string>> divided;
+      const auto split = [](const std::string &id) {
+        return std::make_pair(id.substr(0, id.find('_')),
+                              id.substr(id.find(':') + 1));
+      };
+      std::istringstream lines(leaves);
+      std::string        line;
+      while (std::getline(lines, line))
+        {
+          auto id = split(line);
+          while (!id.second.empty())
+            {
+              id.second.pop_back();
+              divided.insert(id);
+            }
+        }
+      for (;;)
+        {
+          unsigned int n = 0;
+          for (const auto &cell : triangulation.active_cell_iterators())
+            if (cell->is_locally_owned() &&
+                divided.count(split(cell->id().to_string())) > 0)
+              {
+                cell->set_refine_flag();
+                ++n;
+              }
+          if (Utilities::MPI::sum(n, triangulation.get_communicator()) == 0)
+            return;
+          triangulation.execute_coarsening_and_refinement();
+        }
+    }
   } // namespace
 
 
@@ -156,11 +227,7 @@ namespace alveolus
       if (dynamic_cast<const FlatManifold<dim> *>(
             &triangulation.get_manifold(id)) == nullptr)
         return false;
-    std::uint64_t n = triangulation.n_cells(0);
-    for (unsigned int level = 1; level < triangulation.n_global_levels();
-         ++level)
-      n *= 1u << dim;
-    return n == triangulation.n_global_active_cells();
+    return true;
   }
 
 
@@ -200,7 +267,12 @@ namespace alveolus
     blocks.put("mesh/lines", std::move(lines));
     if (dim == 3)
       blocks.put("mesh/quads", std::move(quads));
-    blocks.put_integer("mesh/refinements", triangulation.n_global_levels() - 1);
+    blocks.put_integer("mesh/refinements",
+                       is_uniform(triangulation)
+                         ? triangulation.n_global_levels() - 1
+                         : 0);
+    if (!is_uniform(triangulation))
+      blocks.put("mesh/leaves", leaves_of(triangulation));
 
     std::ostringstream points;
     BlockFile::Numbers coordinates;
@@ -267,6 +339,8 @@ namespace alveolus
     if (refinements > 20)
       blocks.refuse("mesh/refinements", "is too large");
     mesh.triangulation->refine_global(refinements);
+    if (blocks.has("mesh/leaves"))
+      divide(*mesh.triangulation, blocks.text("mesh/leaves"));
 
     std::istringstream points(blocks.text("mesh/names of points"));
     const auto        &values = blocks.numbers("mesh/points");

@@ -46,6 +46,9 @@ namespace alveolus
     bool
     lies_on(const LineIterator &line, const CurveIds &ids)
     {
+      // Then the halves are lines of finer cells.
+      if (line->has_children())
+        return false;
       if (ids.manifolds.count(line->manifold_id()) > 0)
         return true;
       // Lines in 3D never get here: they have no boundary ids to match.

@@ -23,6 +23,10 @@ namespace alveolus
                       "Planned remeshes: increasing times [T], which steps hit "
                       "exactly; 0 is before the first step.",
                       Patterns::List(Patterns::Double(0.)));
+    prm.add_parameter("Every steps",
+                      every,
+                      "Remesh after every so many steps; 0: never.",
+                      Patterns::Integer(0));
     prm.add_parameter("Below quality",
                       below_quality,
                       "Remesh when the smallest scaled Jacobian falls below "
@@ -76,7 +80,9 @@ namespace alveolus
   }
 
   std::string
-  RemeshPlan::due(const double time, const double quality) const
+  RemeshPlan::due(const double       time,
+                  const double       quality,
+                  const unsigned int n_steps) const
   {
     if (n_accepted >= parameters.max_remeshes)
       return "";
@@ -84,6 +90,9 @@ namespace alveolus
       for (const double planned : parameters.times)
         if (std::abs(planned - time) <= same * std::max(planned, time))
           return "planned";
+    if (time != last_time && parameters.every > 0 && n_steps > 0 &&
+        n_steps % parameters.every == 0)
+      return "planned";
     if (quality < parameters.below_quality && quality < 0.8 * quality_after)
       {
         std::ostringstream reason;

@@ -70,6 +70,15 @@ namespace alveolus
       throw InputError(text.origin("Regions/Names"),
                        "the scene has no region",
                        "list at least one in Regions / Names");
+    if (remesher && degree > remesher->largest_degree())
+      throw InputError(text.origin("Mesh/Degree") + ": Mesh / Degree",
+                       "it is " + std::to_string(degree) + ", the remesher '" +
+                         remesher_type + "' makes meshes of degree " +
+                         std::to_string(remesher->largest_degree()) +
+                         " at most (hanging nodes)",
+                       "set it to " +
+                         std::to_string(remesher->largest_degree()) +
+                         ", or choose another `Remeshing / Type`");
     if (output_directory.empty())
       {
         std::string name = text.file_name.substr(

@@ -675,16 +675,32 @@ TEST(Rezoner, PrecedenceAndContradictions)
     }
 }
 
-TEST(Rezoner, RefusesHangingNodes)
+// After the rules hanging nodes are in the middle again; degree 2 is refused.
+TEST(Rezoner, HangingNodes)
 {
-  Mesh<2> mesh = unit_mesh<2>(2);
-  for (const auto &cell : mesh.triangulation->active_cell_iterators())
-    if (cell->is_locally_owned() && cell->center()[0] < 0.5 &&
-        cell->center()[1] < 0.5)
-      cell->set_refine_flag();
-  mesh.triangulation->execute_coarsening_and_refinement();
-  const Bench<2> bench(std::move(mesh), 1);
+  const auto refined = []() {
+    Mesh<2> mesh = unit_mesh<2>(2);
+    for (const auto &cell : mesh.triangulation->active_cell_iterators())
+      if (cell->is_locally_owned() && cell->center()[0] < 0.5 &&
+          cell->center()[1] < 0.5)
+        cell->set_refine_flag();
+    mesh.triangulation->execute_coarsening_and_refinement();
+    return mesh;
+  };
+  const Bench<2> bench(refined(), 1);
   Rezoning<2>    run(bench);
-  run.add("Giuliani", {{"On", "all"}});
-  EXPECT_THROW(run(bench.initial, bench.initial, bench.initial), InputError);
+  run.add("Giuliani", {{"On", "all"}, {"Shapes", "equal"}});
+  NodalVector x = run(bench.initial, bench.initial, bench.initial);
+  x.update_ghost_values();
+  NodalVector constrained(x);
+  constrained.update_ghost_values();
+  HangingNodes<2>(bench.configuration).distribute(constrained);
+  for (unsigned int i = 0; i < x.locally_owned_size(); ++i)
+    EXPECT_NEAR(x.local_element(i), constrained.local_element(i), 1e-15);
+
+  const Bench<2> quadratic(refined(), 2);
+  Rezoning<2>    refused(quadratic);
+  refused.add("Giuliani", {{"On", "all"}});
+  EXPECT_THROW(refused(quadratic.initial, quadratic.initial, quadratic.initial),
+               InputError);
 }

@@ -158,12 +158,6 @@ TEST(MeshRecord, CurvedMeshesAreLeftToTheirSource)
     MPI_COMM_WORLD,
     "grid generator",
     {{"Function", "hyper_shell"}, {"Arguments", "0, 0 : 1 : 2 : 12 : true"}})));
-  Mesh<2> mesh = academic(MPI_COMM_WORLD);
-  for (const auto &cell : mesh.triangulation->active_cell_iterators())
-    if (cell->is_locally_owned() && cell->center()[0] < 0.)
-      cell->set_refine_flag();
-  mesh.triangulation->execute_coarsening_and_refinement();
-  EXPECT_FALSE(can_be_stored(mesh));
 }
 
 TEST(MeshRecord, InconsistentBlocksAreRefused)

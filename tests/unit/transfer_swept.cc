@@ -733,7 +733,7 @@ TEST(SweptTransfer, Errors)
         cell->set_refine_flag();
     t.execute_coarsening_and_refinement();
   };
-  EXPECT_THROW(Problem<2>(1, refined), RunError);
+  EXPECT_THROW(Problem<2>(2, refined), InputError);
   const auto unknown = [](parallel::distributed::Triangulation<2> &t) {
     cube<2>(t);
     for (const auto &cell : t.active_cell_iterators())

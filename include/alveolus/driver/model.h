@@ -12,6 +12,7 @@
 
 #include <deal.II/base/timer.h>
 
+#include <functional>
 #include <memory>
 #include <set>
 #include <vector>
@@ -31,11 +32,14 @@ namespace alveolus
     /**
      * @param scene its conditions, rules and recorders are attached to this
      *        mesh, so every model has a scene of its own
+     * @param positions where the nodes are now; empty: where the mesh has them
      * @throws InputError
      */
     Model(std::shared_ptr<Scene<dim>> scene,
           Mesh<dim>                   mesh,
-          dealii::TimerOutput        &timer);
+          dealii::TimerOutput        &timer,
+          const std::function<NodalVector(const Configuration<dim> &)>
+            &positions = {});
 
     Model(const Model &) = delete;
     Model &

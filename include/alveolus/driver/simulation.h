@@ -111,6 +111,12 @@ namespace alveolus
      */
     bool
     remesh(const std::string &reason, const bool for_quality);
+    /**
+     * By active cell, also ghosts: the density of the stored energy [MPa]
+     * ("strain energy") or of the bone [g/cc] ("density").
+     */
+    std::vector<double>
+    cell_means(const std::string &quantity) const;
     /** Transfer to a candidate and bring it into equilibrium. */
     Remeshed
     try_candidate(RemeshCandidate<dim>        candidate,

@@ -19,8 +19,8 @@ namespace alveolus
   fingerprint(const Mesh<dim> &mesh);
 
   /**
-   * Whether load_mesh() can make the mesh anew: all manifolds are flat, and all
-   * cells are divided equally often.
+   * Whether load_mesh() can make the mesh anew: all manifolds are flat. Local
+   * refinement is stored, too.
    */
   template <int dim>
   bool

@@ -21,6 +21,7 @@ namespace alveolus
     struct Parameters
     {
       std::vector<double> times;
+      unsigned int        every          = 0;
       double              below_quality  = -1.;
       double              accept_quality = 0.3;
       bool                after_failure  = true;
@@ -41,9 +42,12 @@ namespace alveolus
     /**
      * Why a remesh is due now; empty if it is not.
      * @param quality smallest scaled Jacobian now
+     * @param n_steps steps done
      */
     std::string
-    due(const double time, const double quality) const;
+    due(const double       time,
+        const double       quality,
+        const unsigned int n_steps = 0) const;
 
     /** Whether a run that failed at @p time may try again on a new mesh. */
     bool

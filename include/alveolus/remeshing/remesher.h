@@ -7,6 +7,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ namespace alveolus
     Mesh<dim>   mesh;
     double      quality = 0.; ///< smallest scaled Jacobian of all corners
     std::string description;  ///< how it was made, for the log
+    /** Current positions of the new nodes; empty: the initial ones. */
+    std::function<NodalVector(const Configuration<dim> &)> positions;
   };
 
   /**
@@ -45,12 +48,34 @@ namespace alveolus
     initialize(const NamedSets<dim> & /*names*/, const std::string & /*where*/)
     {}
 
+    /** Largest degree of the elements that the remesher knows. */
+    virtual unsigned int
+    largest_degree() const
+    {
+      return 2;
+    }
+
+    /**
+     * What it decides by, "strain energy" or "density"; empty: nothing. Then
+     * tell() comes before candidates().
+     */
+    virtual std::string
+    indicator() const
+    {
+      return "";
+    }
+
+    /** Cell means of the indicator by active cell index, also of ghosts. */
+    virtual void
+    tell(const std::vector<double> & /*cell_values*/)
+    {}
+
     /**
      * New meshes of the body at the current positions of @p old, the best first
      * (collective, the same for any number of processes). Each has the names,
      * boundary, manifold and material ids of the old mesh; its named points are
      * where the old ones are now. The initial positions of a new mesh are the
-     * current ones of the old mesh.
+     * current ones of the old mesh, unless the candidate tells its positions.
      * @param output_directory existing folder for files made on the way
      * @param name  of the remesh, for these files
      * @throws RunError if there is none
