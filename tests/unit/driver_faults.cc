@@ -112,6 +112,7 @@ namespace
                       "Time/Initial step=0.1",
                       "Time/Maximum step=0.1",
                       "Time/Minimum step=0.02",
+                      "Checkpoint/Step interval=1",
                       "Output/Fields=false"};
 
   bool
