@@ -95,6 +95,12 @@ namespace alveolus
         x.update_ghost_values();
       }
 
+      double
+      pivot_ratio() const override
+      {
+        return umfpack.pivot_ratio();
+      }
+
       std::string
       name() const override
       {

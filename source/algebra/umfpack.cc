@@ -3,6 +3,7 @@
 #include <alveolus/base/errors.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <umfpack.h>
 
@@ -88,13 +89,16 @@ namespace alveolus
 
     if (numeric != nullptr)
       umfpack_dl_free_numeric(&numeric);
-    const int status = umfpack_dl_numeric(row_begin.data(),
+    std::array<double, UMFPACK_INFO> info{};
+
+    const int status            = umfpack_dl_numeric(row_begin.data(),
                                           columns.data(),
                                           values.data(),
                                           symbolic,
                                           &numeric,
                                           nullptr,
-                                          nullptr);
+                                          info.data());
+    smallest_over_largest_pivot = info[UMFPACK_RCOND];
     if (status != UMFPACK_OK)
       throw RunError("UMFPACK",
                      status == UMFPACK_WARNING_singular_matrix

@@ -4,6 +4,7 @@
 
 #include <deal.II/base/utilities.h>
 
+#include <iostream>
 #include <sstream>
 
 namespace alveolus
@@ -27,6 +28,30 @@ namespace alveolus
 
 
 
+    /** deal.II writes parts of the message to std::cerr before it throws. */
+    class Quiet
+    {
+    public:
+      Quiet()
+        : former(std::cerr.rdbuf(nullptr))
+      {}
+
+      Quiet(const Quiet &) = delete;
+      Quiet &
+      operator=(const Quiet &) = delete;
+
+      ~Quiet()
+      {
+        std::cerr.rdbuf(former);
+        std::cerr.clear();
+      }
+
+    private:
+      std::streambuf *former;
+    };
+
+
+
     /** @param variables names, e.g. "x,y"; one more than dim if one is time. */
     template <int dim>
     std::unique_ptr<FunctionParser<dim>>
@@ -46,13 +71,16 @@ namespace alveolus
                            : std::to_string(n_components) +
                                " are needed, separated by semicolons");
       auto function = std::make_unique<FunctionParser<dim>>(n_components);
+      const Quiet quiet;
       try
         {
           function->initialize(variables,
                                list,
                                {{"pi", numbers::PI}},
                                with_time);
-          function->value(Point<dim>(), 0);
+          // Each expression is parsed when it is first evaluated.
+          for (unsigned int c = 0; c < n_components; ++c)
+            function->value(Point<dim>(), c);
         }
       catch (const ExceptionBase &error)
         {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/base/errors.h>
 #include <alveolus/driver/messages.h>
 #include <alveolus/driver/model.h>
 
@@ -8,6 +9,24 @@
 namespace alveolus
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** One error that tells all problems, one a line. */
+    InputError
+    all_of(const std::vector<std::string> &problems)
+    {
+      std::string text = problems[0];
+      for (unsigned int i = 1; i < problems.size(); ++i)
+        text += "\n" + problems[i];
+      const std::size_t colon = text.find(": ");
+      return colon == std::string::npos
+               ? InputError("scene", text, "")
+               : InputError(text.substr(0, colon), text.substr(colon + 2), "");
+    }
+  } // namespace
+
+
 
   template <int dim>
   Model<dim>::Model(
@@ -21,18 +40,34 @@ namespace alveolus
     make_state();
     if (positions)
       state->configuration.set_positions(positions(state->configuration));
+    // All problems at once, not one for each run
+    std::vector<std::string> problems;
+    const auto               collect = [&problems](const auto &action) {
+      try
+        {
+          action();
+        }
+      catch (const InputError &error)
+        {
+          problems.push_back(error.what());
+        }
+    };
     for (auto &condition : scene->conditions)
       {
-        condition.object->choose_interface_law(scene->interface_laws,
-                                               condition.where);
-        condition.object->attach(*state, condition.where);
+        collect([&]() {
+          condition.object->choose_interface_law(scene->interface_laws,
+                                                 condition.where);
+          condition.object->attach(*state, condition.where);
+        });
         conditions.push_back(std::move(condition.object));
       }
     for (auto &recorder : scene->recorders)
-      {
+      collect([&]() {
         recorder.object->offer_regions(regions);
         recorder.object->attach(*state, recorder.where);
-      }
+      });
+    if (!problems.empty())
+      throw all_of(problems);
 
     equilibrium = std::make_unique<Equilibrium<dim>>(
       *state, regions, conditions, scene->solver, timer);
@@ -76,7 +111,15 @@ namespace alveolus
           for (const auto id :
                mesh.names.region(name,
                                  "Regions / " + definition.name + " / On"))
-            region_of_material[id] = r;
+            {
+              const auto entry = region_of_material.emplace(id, r);
+              if (entry.first->second != r)
+                throw InputError("Regions / " + definition.name + " / On",
+                                 "cells of '" + name + "' belong to region '" +
+                                   scene->regions[entry.first->second].name +
+                                   "', too",
+                                 "name each part of the mesh in one region");
+            }
         const Material &material =
           *scene->materials[scene->material_of(definition)].object;
         regions.push_back({definition.name,

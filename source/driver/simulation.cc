@@ -73,6 +73,15 @@ namespace alveolus
                          number(quality.where[0]) + ", " +
                          number(quality.where[1]) + ") mm");
     totals.smallest_quality = quality.smallest_scaled_jacobian;
+
+    // Contradictory conditions show in the first step: rather now.
+    const Interval first{0., std::min(scene.time.initial_step, scene.time.end)};
+    PrescribedIncrements increments;
+    for (auto &condition : model->conditions)
+      {
+        condition->begin_step(*model->state, first);
+        condition->prescribe(*model->state, first, increments);
+      }
   }
 
 

@@ -237,7 +237,18 @@ namespace alveolus
             const auto parts =
               dealii::Utilities::split_string_list(list[argument], ',');
             for (const std::string &part : parts)
-              n *= std::abs(std::strtod(part.c_str(), nullptr));
+              {
+                const double value = std::strtod(part.c_str(), nullptr);
+                // deal.II takes it for granted; of shells 0 is a default.
+                if (!(value >= 1.) &&
+                    (function.compare(0, 10, "subdivided") == 0 ||
+                     function == "cheese"))
+                  throw InputError(section + " / Arguments",
+                                   "'" + part + "' is no number of cells of '" +
+                                     function + "'",
+                                   "write a positive integer");
+                n *= std::max(1., std::abs(value));
+              }
             if (parts.size() == 1 &&
                 function.compare(0, 16, "subdivided_hyper") == 0)
               n = std::pow(n, dim);

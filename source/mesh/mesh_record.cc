@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/mesh/mesh_checks.h>
 #include <alveolus/mesh/mesh_record.h>
 
 #include <deal.II/base/mpi.h>
@@ -6,6 +7,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <set>
 #include <sstream>
@@ -306,6 +308,20 @@ namespace alveolus
     const auto cells =
       read_elements<dim>(blocks, "mesh/cells", vertices.size());
 
+    // Whatever is wrong with them, p4est would end the program.
+    MeshDescription<dim> description;
+    description.vertices = vertices;
+    for (const auto &cell : cells)
+      {
+        DescribedElement<dim> element;
+        std::copy(cell.vertices.begin(),
+                  cell.vertices.end(),
+                  element.vertices.begin());
+        for (const double jacobian : corner_jacobians(description, element))
+          if (!(jacobian > 0.)) // or not a number
+            blocks.refuse("mesh/cells", "has an inverted cell");
+      }
+
     // Flat parts of the inside need not be listed, and may not be in 3D.
     SubCellData named;
     const auto  matters = [](const auto &element) {
@@ -336,7 +352,11 @@ namespace alveolus
         blocks.refuse("mesh/cells", "makes no mesh: " + message.str());
       }
     const std::uint64_t refinements = blocks.integer("mesh/refinements");
-    if (refinements > 20)
+    // Each node of the mesh has values, and each cell a node.
+    const std::string nodal = "state/displacement";
+    if (refinements > 20 ||
+        (blocks.has(nodal) && std::ldexp(cells.size(), dim * refinements) >
+                                blocks.numbers(nodal).size()))
       blocks.refuse("mesh/refinements", "is too large");
     mesh.triangulation->refine_global(refinements);
     if (blocks.has("mesh/leaves"))

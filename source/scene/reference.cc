@@ -110,7 +110,9 @@ namespace alveolus
     write_registry<MeshSource<2>>(
       "Mesh",
       "`Type` chooses the source, whose parameters stand in a subsection of "
-      "that name; `Degree` (1 or 2) of displacement and geometry.",
+      "that name; `Degree` (1 or 2) of displacement and geometry; a mesh of "
+      "more than `Largest number of cells` (10000000) is refused before it is "
+      "made.",
       out);
     out << "## Regions\n\nListed in `Names`; each member: `On` (named regions "
            "of the mesh), `Material`, `Volumetric treatment` (mean dilatation "

@@ -7,6 +7,16 @@ namespace alveolus
 {
   using namespace dealii;
 
+  namespace
+  {
+    /**
+     * Ratio of the pivots below which a failure may have its cause in the
+     * matrix: a few times round-off. Regular matrices of very different
+     * stiffnesses may reach it, too, so that it only explains failures.
+     */
+    constexpr double nearly_singular = 1e-14;
+  } // namespace
+
   template <int dim>
   void
   Equilibrium<dim>::Parameters::declare(ParameterHandler &prm)
@@ -238,8 +248,15 @@ namespace alveolus
                           const Imbalance   *held)
   {
     held_imbalance    = held;
-    const auto repeat = [](const std::string &reason) {
-      return Verdict{Verdict::Kind::repeat, reason};
+    bool       solved = false;
+    const auto repeat = [&](const std::string &reason) {
+      // A body that nothing holds goes anywhere: what comes of it is no cause.
+      const bool singular = solved && system->pivot_ratio() < nearly_singular;
+      return Verdict{Verdict::Kind::repeat,
+                     reason + (singular ? " (the matrix is singular but for "
+                                          "round-off: check that the "
+                                          "conditions hold every body)"
+                                        : "")};
     };
     assembler.begin_step(interval);
     set_constraints(interval);
@@ -339,6 +356,7 @@ namespace alveolus
           try
             {
               system->solve(correction, residual_vector);
+              solved = true;
             }
           catch (const RunError &error)
             {

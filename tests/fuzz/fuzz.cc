@@ -28,6 +28,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#ifdef __SANITIZE_ADDRESS__
+#  include <sanitizer/lsan_interface.h>
+#endif
+
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -61,6 +65,28 @@ namespace alveolus::fuzz
       char          problem[4000]; ///< of this input, if it ended by itself
     };
 
+    /** Whether LeakSanitizer, if it is built in, counts what is allocated. */
+    void
+    leaks_count(const bool yes)
+    {
+#ifdef __SANITIZE_ADDRESS__
+      yes ? __lsan_enable() : __lsan_disable();
+#endif
+      (void)yes;
+    }
+
+    bool
+    there_are_leaks()
+    {
+#ifdef __SANITIZE_ADDRESS__
+      return __lsan_do_recoverable_leak_check() != 0;
+#else
+      return false;
+#endif
+    }
+
+
+
     /** Start an MPI process, let it do @p action and wait for its end. */
     int
     in_a_process(const std::string               &said,
@@ -79,8 +105,10 @@ namespace alveolus::fuzz
           char       *arguments = name.data(), **argv = &arguments;
           setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
           int code = 0;
+          leaks_count(false); // MPI's own
           {
             dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+            leaks_count(true);
             try
               {
                 action();
@@ -90,8 +118,12 @@ namespace alveolus::fuzz
                 std::cerr << error.what() << std::endl;
                 code = 1;
               }
+            if (code == 0 && there_are_leaks())
+              code = 23;
+            leaks_count(false);
           }
-          std::exit(code); // where leaks are looked for
+          std::cout.flush();
+          std::_Exit(code);
         }
       int status = 0;
       while (waitpid(pid, &status, 0) < 0 && errno == EINTR)

@@ -204,6 +204,16 @@ TEST(MeshRecord, InconsistentBlocksAreRefused)
     [](BlockFile &bad) { bad.put("mesh/regions", std::string("3 1 2\n")); }));
   EXPECT_TRUE(
     refused([](BlockFile &bad) { bad.put_integer("mesh/refinements", 1000); }));
+  // What p4est would end the program for
+  EXPECT_TRUE(refused([](BlockFile &bad) {
+    auto cells = bad.integers("mesh/cells");
+    cells[6]   = cells[7]; // an edge of no length
+    bad.put("mesh/cells", cells);
+  }));
+  EXPECT_TRUE(refused([](BlockFile &bad) {
+    bad.put("state/displacement", BlockFile::Numbers(1000, 0.));
+    bad.put_integer("mesh/refinements", 12); // more cells than values
+  }));
 }
 
 

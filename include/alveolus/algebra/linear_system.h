@@ -80,6 +80,16 @@ namespace alveolus
       return 1;
     }
 
+    /**
+     * Smallest over largest pivot of the last solve as an estimate of the
+     * reciprocal condition number; 1 for solvers that do not tell.
+     */
+    virtual double
+    pivot_ratio() const
+    {
+      return 1.;
+    }
+
     /** Name for the log. */
     virtual std::string
     name() const = 0;

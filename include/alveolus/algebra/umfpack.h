@@ -31,7 +31,20 @@ namespace alveolus
     void
     solve(dealii::Vector<double> &x, const dealii::Vector<double> &b) const;
 
+    /**
+     * Smallest over largest pivot of the last factorisation, an estimate of the
+     * reciprocal condition number. That of a body which nothing holds is at the
+     * level of round-off, though seldom zero.
+     */
+    double
+    pivot_ratio() const
+    {
+      return smallest_over_largest_pivot;
+    }
+
   private:
+    double smallest_over_largest_pivot = 1.;
+
     void
     analyse(const dealii::SparseMatrix<double> &matrix);
 
