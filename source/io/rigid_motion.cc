@@ -169,6 +169,23 @@ namespace alveolus
         for (unsigned int d = 0; d < dim; ++d)
           row.emplace_back("rotation " + axis_names[d] + " [degrees]",
                            turn[d] * to_degrees);
+        // Every rigid motion is a screw: the point of its axis nearest to the
+        // centroid, X_c + (t + cot(angle/2) a x t)/2 with t normal to a
+        const double         angle  = turn.norm();
+        const bool           turned = angle > 1e-12;
+        const Tensor<1, 3>   axis   = turned ? turn / angle : Tensor<1, 3>();
+        const Tensor<1, 3>   moved  = x_c - X_c;
+        const double         along  = moved * axis;
+        const Tensor<1, 3>   across = moved - along * axis;
+        const Tensor<1, 3>   on_axis =
+          X_c + 0.5 * (across + cross_product_3d(axis, across) /
+                                  std::tan(0.5 * angle));
+        const double beyond = std::numeric_limits<double>::quiet_NaN();
+        for (unsigned int d = 0; d < dim; ++d)
+          row.emplace_back("axis of rotation at " + axis_names[d] + " [mm]",
+                           turned ? on_axis[d] : beyond);
+        row.emplace_back("translation along axis [mm]",
+                         turned ? along : beyond);
       }
     row.emplace_back("deviation [mm]",
                      std::sqrt(
@@ -193,6 +210,7 @@ namespace alveolus
     "The rigid motion that fits the regions `On` best, x = x_c + R (X - X_c) "
     "with the least int |x - x_c - R (X - X_c)|^2 dv: displacement of the "
     "centroid [mm], rotation [degrees] (3D: rotation vector), in 2D the centre "
-    "of rotation [mm] (nan without rotation), and the root mean square of the "
+    "of rotation [mm], in 3D the point of the axis of rotation nearest to the "
+    "centroid and the translation along it [mm] (nan without rotation), and the root mean square of the "
     "deviation from it [mm].")
 } // namespace alveolus

@@ -83,6 +83,30 @@ namespace alveolus
 
 
 
+    /** The entries that Interface<3> has beyond those of Interface<2>, or under
+     * the same name with another description. */
+    template <template <int> class Interface>
+    void
+    write_registry_3d(std::ostream &out)
+    {
+      const auto &plane = Registry<Interface<2>>::entries();
+      for (const auto &entry : Registry<Interface<3>>::entries())
+        {
+          const auto same = plane.find(entry.first);
+          if (same != plane.end() &&
+              same->second.description == entry.second.description)
+            continue;
+          out << "### Type = " << entry.first << " (3D)\n\n"
+              << entry.second.description << "\n\n";
+          ParameterHandler prm;
+          const auto       object = entry.second.factory();
+          object->declare_parameters(prm);
+          write_table(prm, out);
+        }
+    }
+
+
+
     template <class Parameters>
     void
     write_section(const std::string &section, std::ostream &out)
@@ -114,6 +138,7 @@ namespace alveolus
       "more than `Largest number of cells` (10000000) is refused before it is "
       "made.",
       out);
+    write_registry_3d<MeshSource>(out);
     out << "## Regions\n\nListed in `Names`; each member: `On` (named regions "
            "of the mesh), `Material`, `Volumetric treatment` (mean dilatation "
            "or none), `Remodelling` (a name or none).\n\n";
@@ -124,6 +149,7 @@ namespace alveolus
     write_registry<Condition<2>>("Conditions", members, out);
     write_section<Equilibrium<2>::Parameters>("Solver", out);
     write_registry<RezoningRule<2>>("Rezoning", members, out);
+    write_registry_3d<RezoningRule>(out);
     out << "## Transfer\n\n`Scheme` is one of "
         << Registry<TransferScheme<2>>::names(", ")
         << "; `Largest donor fraction` bounds what may leave a sub-cell in one "
