@@ -2,8 +2,8 @@
 """Pictures of the incisor: the whole mesh, and both alveolar margins at several
 loads with the worst elements in red.
 
-render_incisor.py OUTPUT_ROOT reads OUTPUT_ROOT/incisor and writes into
-OUTPUT_ROOT/figures. Needs python3-vtk9 and a display (xvfb-run).
+render_incisor.py OUTPUT_ROOT reads OUTPUT_ROOT/incisor, incisor-lagrangian and
+incisor-ale, and writes into OUTPUT_ROOT/figures. Needs python3-vtk9 and a display (xvfb-run).
 """
 import os
 import sys
@@ -92,11 +92,25 @@ def draw(renderers, columns, size, file_name):
     writer.Write()
 
 
+def last_loads(root):
+    """Both margins of the runs that stop, where they do."""
+    views = []
+    for name, title in (("incisor-lagrangian", "Lagrangian"), ("incisor-ale", "ALE")):
+        folder = os.path.join(root, name)
+        load, file = max(series(folder).items())
+        views += [view(os.path.join(folder, file), x, y, 0.36,
+                       "%s, %s, %.2f N" % (title, margin, load))
+                  for margin, x, y in MARGINS]
+    return views
+
+
 def main(root):
     folder = os.path.join(root, "incisor")
     files = series(folder)
     times = sorted(files)
     path = lambda t: os.path.join(folder, files[t])
+    draw(last_loads(root), 4, (560, 560),
+         os.path.join(root, "figures", "incisor-7-stopped.png"))
     draw([view(path(times[0]), 0, 3.5, 18.5, "")], 1, (900, 1500),
          os.path.join(root, "figures", "incisor-3-mesh.png"))
     near = lambda load: min(times, key=lambda t: abs(t - load))

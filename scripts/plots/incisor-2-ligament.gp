@@ -16,7 +16,7 @@ table2(e) = e < 0 ? 0.068*e - 0.5*0.612*e*e/0.25 : e < 0.14 ? 0.068*e + 0.5*1.28
 set title "Compression and tension"
 set xrange [-0.5:0.6]
 set yrange [-4:4]
-set key top left
+set key bottom right
 plot table(x) lt -1 dt 3 title "Table 2", \
      pulled("valanis-landel") using (0.6*column("time [T]")):"top: force z [N]" lt 1 title "Valanis-Landel", \
      pressed("valanis-landel") using (-0.8*column("time [T]")):"top: force z [N]" lt 1 notitle, \

@@ -250,9 +250,9 @@ namespace alveolus
       std::string
       name() const override
       {
-        return method == Method::direct ? "MUMPS" :
-               method == Method::cg     ? "CG with ML" :
-                                          "GMRES with ML";
+        return method == Method::direct ? "MUMPS"
+               : method == Method::cg   ? "CG with ML"
+                                        : "GMRES with ML";
       }
 
     private:
@@ -410,14 +410,15 @@ namespace alveolus
                                             constraints,
                                             couplings);
     using Distributed = DistributedSystem<dim>;
-    return std::make_unique<Distributed>(
-      dof_handler,
-      constraints,
-      type == "multigrid"       ? Distributed::Method::cg :
-      type == "multigrid GMRES" ? Distributed::Method::gmres :
-                                  Distributed::Method::direct,
-      tolerance,
-      couplings);
+    return std::make_unique<Distributed>(dof_handler,
+                                         constraints,
+                                         type == "multigrid"
+                                           ? Distributed::Method::cg
+                                         : type == "multigrid GMRES"
+                                           ? Distributed::Method::gmres
+                                           : Distributed::Method::direct,
+                                         tolerance,
+                                         couplings);
   }
 
   template std::unique_ptr<LinearSystem>

@@ -342,7 +342,8 @@ namespace alveolus
                 << " solutions, relative residual at most "
                 << mechanics_report.linear_residual;
     if (mechanics_report.n_direct_instead > 0)
-      residuals << "; the iteration failed " << mechanics_report.n_direct_instead
+      residuals << "; the iteration failed "
+                << mechanics_report.n_direct_instead
                 << " times and MUMPS took over, try `Solver / Linear solver = "
                    "multigrid GMRES` or MUMPS";
     log.note("t = " + number(state.time, 8) + " T accepted, residuals" +

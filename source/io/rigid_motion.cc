@@ -171,15 +171,15 @@ namespace alveolus
                            turn[d] * to_degrees);
         // Every rigid motion is a screw: the point of its axis nearest to the
         // centroid, X_c + (t + cot(angle/2) a x t)/2 with t normal to a
-        const double         angle  = turn.norm();
-        const bool           turned = angle > 1e-12;
-        const Tensor<1, 3>   axis   = turned ? turn / angle : Tensor<1, 3>();
-        const Tensor<1, 3>   moved  = x_c - X_c;
-        const double         along  = moved * axis;
-        const Tensor<1, 3>   across = moved - along * axis;
-        const Tensor<1, 3>   on_axis =
-          X_c + 0.5 * (across + cross_product_3d(axis, across) /
-                                  std::tan(0.5 * angle));
+        const double       angle  = turn.norm();
+        const bool         turned = angle > 1e-12;
+        const Tensor<1, 3> axis   = turned ? turn / angle : Tensor<1, 3>();
+        const Tensor<1, 3> moved  = x_c - X_c;
+        const double       along  = moved * axis;
+        const Tensor<1, 3> across = moved - along * axis;
+        const Tensor<1, 3> on_axis =
+          X_c + 0.5 * (across +
+                       cross_product_3d(axis, across) / std::tan(0.5 * angle));
         const double beyond = std::numeric_limits<double>::quiet_NaN();
         for (unsigned int d = 0; d < dim; ++d)
           row.emplace_back("axis of rotation at " + axis_names[d] + " [mm]",

@@ -157,7 +157,8 @@ namespace alveolus
     std::vector<bool> on;
     for (const Place &x : mesh.vertices)
       on.push_back(condition(x));
-    std::map<std::set<unsigned int>, std::pair<std::array<unsigned int, 4>, int>>
+    std::map<std::set<unsigned int>,
+             std::pair<std::array<unsigned int, 4>, int>>
       found;
     for (const auto &cell : mesh.cells)
       for (const auto &face : faces)

@@ -76,7 +76,10 @@ namespace alveolus
                         bone[0],
                         "Half the labio-lingual width of the bone [mm].",
                         length);
-      prm.add_parameter("Bone height", bone[1], "From crest to base [mm].", length);
+      prm.add_parameter("Bone height",
+                        bone[1],
+                        "From crest to base [mm].",
+                        length);
       prm.add_parameter("Bone half thickness",
                         bone[2],
                         "From the plane of symmetry to the mesio-distal end of "
@@ -121,8 +124,9 @@ namespace alveolus
     unsigned int
     divisions(const unsigned int by_default, const unsigned int least) const
     {
-      return std::max<unsigned int>(
-        least, std::lround(by_default * std::cbrt(density)));
+      return std::max<unsigned int>(least,
+                                    std::lround(by_default *
+                                                std::cbrt(density)));
     }
 
     /** Half axes of the section at height @p y above the crest [mm]. */
@@ -131,12 +135,12 @@ namespace alveolus
     {
       // Cubic from the root to the widest place at a third, then to the edge
       const double widest = height / 3.;
-      const auto   smooth = [](const double u) { return u * u * (3. - 2. * u); };
+      const auto smooth = [](const double u) { return u * u * (3. - 2. * u); };
       const double a =
-        y < widest ?
-          root[0] + (crown_width - root[0]) * smooth(y / widest) :
-          crown_width + (edge_width - crown_width) *
-                          std::pow((y - widest) / (height - widest), 1.5);
+        y < widest
+          ? root[0] + (crown_width - root[0]) * smooth(y / widest)
+          : crown_width + (edge_width - crown_width) *
+                            std::pow((y - widest) / (height - widest), 1.5);
       return {{a, root[2] + (edge_length - root[2]) * smooth(y / height)}};
     }
 
@@ -221,28 +225,22 @@ namespace alveolus
                      Divisions{{n, n_s, n_t}},
                      [&](const Place &u) {
                        const double s = 1. - u[1], t = u[2];
-                       return layer(k,
-                                    core(side, s, t),
-                                    Place(side,
-                                          -equiangular(s, deep),
-                                          equiangular(t, 1.)),
-                                    Place(side * bone[0],
-                                          -s * bone[1],
-                                          t * bone[2]),
-                                    side < 0. ? 1. - u[0] : u[0]);
+                       return layer(
+                         k,
+                         core(side, s, t),
+                         Place(side, -equiangular(s, deep), equiangular(t, 1.)),
+                         Place(side * bone[0], -s * bone[1], t * bone[2]),
+                         side < 0. ? 1. - u[0] : u[0]);
                      });
-          mesh.add(walls[k].region,
-                   Divisions{{2 * n_t, n_s, n}},
-                   [&](const Place &u) {
-                     const double r = 2. * u[0] - 1., s = 1. - u[1];
-                     return layer(k,
-                                  core(r, s, 1.),
-                                  Place(equiangular(r, 1.),
-                                        -equiangular(s, deep),
-                                        1.),
-                                  Place(r * bone[0], -s * bone[1], bone[2]),
-                                  u[2]);
-                   });
+          mesh.add(
+            walls[k].region, Divisions{{2 * n_t, n_s, n}}, [&](const Place &u) {
+              const double r = 2. * u[0] - 1., s = 1. - u[1];
+              return layer(k,
+                           core(r, s, 1.),
+                           Place(equiangular(r, 1.), -equiangular(s, deep), 1.),
+                           Place(r * bone[0], -s * bone[1], bone[2]),
+                           u[2]);
+            });
           mesh.add(walls[k].region,
                    Divisions{{2 * n_t, n, n_t}},
                    [&](const Place &u) {
@@ -264,9 +262,11 @@ namespace alveolus
                      v * height,
                      at_crest[2] * axes[1] / root[2]);
       };
-      mesh.add("tooth", Divisions{{2 * n_t, n_crown, n_t}}, [&](const Place &u) {
-        return lifted(core(2. * u[0] - 1., 0., u[2]), u[1]);
-      });
+      mesh.add("tooth",
+               Divisions{{2 * n_t, n_crown, n_t}},
+               [&](const Place &u) {
+                 return lifted(core(2. * u[0] - 1., 0., u[2]), u[1]);
+               });
       for (const double side : {-1., 1.})
         mesh.add("tooth",
                  Divisions{{n_ring, n_crown, n_t}},
@@ -277,29 +277,26 @@ namespace alveolus
                              side < 0. ? 1. - u[0] : u[0]),
                      u[1]);
                  });
-      mesh.add("tooth",
-               Divisions{{2 * n_t, n_crown, n_ring}},
-               [&](const Place &u) {
-                 const double r = 2. * u[0] - 1.;
-                 return lifted(between(core(r, 0., 1.),
-                                       on_root(
-                                         Place(equiangular(r, 1.), 0., 1.)),
-                                       u[2]),
-                               u[1]);
-               });
+      mesh.add(
+        "tooth", Divisions{{2 * n_t, n_crown, n_ring}}, [&](const Place &u) {
+          const double r = 2. * u[0] - 1.;
+          return lifted(between(core(r, 0., 1.),
+                                on_root(Place(equiangular(r, 1.), 0., 1.)),
+                                u[2]),
+                        u[1]);
+        });
     }
 
     void
     add_names(BlockMesh &mesh) const
     {
-      const double eps   = 1e-9 * bone[1];
-      const auto   plane = [&](const std::string &name,
-                             const unsigned int d,
-                             const double       value) {
-        mesh.name_boundary(name, [=](const Place &x) {
-          return std::abs(x[d] - value) < eps;
-        });
-      };
+      const double eps = 1e-9 * bone[1];
+      const auto   plane =
+        [&](const std::string &name, const unsigned int d, const double value) {
+          mesh.name_boundary(name, [=](const Place &x) {
+            return std::abs(x[d] - value) < eps;
+          });
+        };
       plane("symmetry", 2, 0.);
       plane("back", 2, bone[2]);
       plane("base", 1, -bone[1]);

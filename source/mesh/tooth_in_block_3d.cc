@@ -133,8 +133,9 @@ namespace alveolus
     unsigned int
     divisions(const unsigned int by_default, const unsigned int least) const
     {
-      return std::max<unsigned int>(
-        least, std::lround(by_default * std::cbrt(density)));
+      return std::max<unsigned int>(least,
+                                    std::lround(by_default *
+                                                std::cbrt(density)));
     }
 
     /** Point of the root in the direction of @p x on the cube. */
@@ -142,7 +143,9 @@ namespace alveolus
     root(const Place &x) const
     {
       const double r = x.norm();
-      return {half_width * x[0] / r, depth * x[1] / r, half_thickness * x[2] / r};
+      return {half_width * x[0] / r,
+              depth * x[1] / r,
+              half_thickness * x[2] / r};
     }
 
     /** Part @p u in [0, 1] of an edge of the cube that is @p length long, at
@@ -179,22 +182,19 @@ namespace alveolus
       // Unit coordinates: around (t, r), up (s) or across, and outwards (w)
       for (const double side : {-1., 1.})
         {
-          const auto map = [&, side](const double t,
-                                     const double s,
-                                     const double w) {
-            return between(root(Place(side,
-                                      -equiangular(s, deep),
-                                      equiangular(t, 1.))),
-                           Place(side * X, -s * Y, t * Z),
-                           w);
-          };
-          const auto far = [&, side](const double t,
-                                     const double s,
-                                     const double w) {
-            return Place(side * (X + w * (half_width + bone_width - X)),
-                         -s * Y,
-                         t * Z);
-          };
+          const auto map =
+            [&, side](const double t, const double s, const double w) {
+              return between(
+                root(Place(side, -equiangular(s, deep), equiangular(t, 1.))),
+                Place(side * X, -s * Y, t * Z),
+                w);
+            };
+          const auto far =
+            [&, side](const double t, const double s, const double w) {
+              return Place(side * (X + w * (half_width + bone_width - X)),
+                           -s * Y,
+                           t * Z);
+            };
           const BlockMesh::Divisions n{{n_out, n_down, n_across}};
           const BlockMesh::Divisions n_lateral{{n_far, n_down, n_across}};
           const std::string          name = side < 0. ? "left" : "right";
@@ -206,24 +206,22 @@ namespace alveolus
             return far(u[2], 1. - u[1], side < 0. ? 1. - u[0] : u[0]);
           });
         }
-      mesh.add("centre",
-               {{2 * n_across, n_down, n_out}},
-               [&](const Place &u) {
-                 const double r = 2. * u[0] - 1., s = 1. - u[1];
-                 return between(root(Place(std::copysign(
-                                             equiangular(std::abs(r), 1.), r),
-                                           -equiangular(s, deep),
-                                           1.)),
-                                Place(r * X, -s * Y, Z),
-                                u[2]);
-               });
+      mesh.add("centre", {{2 * n_across, n_down, n_out}}, [&](const Place &u) {
+        const double r = 2. * u[0] - 1., s = 1. - u[1];
+        return between(root(
+                         Place(std::copysign(equiangular(std::abs(r), 1.), r),
+                               -equiangular(s, deep),
+                               1.)),
+                       Place(r * X, -s * Y, Z),
+                       u[2]);
+      });
       mesh.add("centre",
                {{2 * n_across, n_out, n_across}},
                [&](const Place &u) {
                  const double r = 2. * u[0] - 1.;
                  return between(
-                   root(Place(apex_part * std::copysign(
-                                         equiangular(std::abs(r), 1.), r),
+                   root(Place(apex_part *
+                                std::copysign(equiangular(std::abs(r), 1.), r),
                               -1.,
                               apex_part * equiangular(u[2], 1.))),
                    Place(r * X, -Y, u[2] * Z),
@@ -285,13 +283,12 @@ namespace alveolus
       });
 
       mesh.name_boundary("root", on_root);
-      const auto plane = [&](const std::string &name,
-                             const unsigned int d,
-                             const double       value) {
-        mesh.name_boundary(name, [=](const Place &x) {
-          return std::abs(x[d] - value) < eps;
-        });
-      };
+      const auto plane =
+        [&](const std::string &name, const unsigned int d, const double value) {
+          mesh.name_boundary(name, [=](const Place &x) {
+            return std::abs(x[d] - value) < eps;
+          });
+        };
       plane("top", 1, 0.);
       plane("base", 1, -Y);
       plane("left end", 0, -end);

@@ -79,18 +79,18 @@ namespace alveolus
       if (cell->is_locally_owned())
         for (const unsigned int f : cell->face_indices())
           {
-            if (cell->at_boundary(f) ?
-                  boundary.count(cell->face(f)->boundary_id()) == 0 :
-                  one.count(cell->material_id()) == 0 ||
-                    other.count(cell->neighbor(f)->material_id()) == 0)
+            if (cell->at_boundary(f)
+                  ? boundary.count(cell->face(f)->boundary_id()) == 0
+                  : one.count(cell->material_id()) == 0 ||
+                      other.count(cell->neighbor(f)->material_id()) == 0)
               continue;
             mesh_nodes.cell_nodes(cell, of_cell);
             std::vector<NodeId> lattice((degree + 1) * (degree + 1));
             for (unsigned int k = 0; k < of_cell.size(); ++k)
               if (fe.has_support_on_face(k, f))
                 {
-                  const Point<3>    &unit = fe.get_unit_support_points()[k];
-                  const unsigned int axis = f / 2;
+                  const Point<3>    &unit  = fe.get_unit_support_points()[k];
+                  const unsigned int axis  = f / 2;
                   const auto         place = [&](const unsigned int d) {
                     return static_cast<unsigned int>(
                       std::lround(degree * unit[d]));
@@ -220,11 +220,11 @@ namespace alveolus
     Vector<double>     right(5), solution(5);
     for (const unsigned int j : around)
       {
-        const Tensor<1, 3> way    = (x[j] - x[i]) / size;
-        const double       t1     = way * frame.tangents[0];
-        const double       t2     = way * frame.tangents[1];
-        const double       height = way * frame.normal;
-        const double       weight = 1. / way.norm_square();
+        const Tensor<1, 3>          way    = (x[j] - x[i]) / size;
+        const double                t1     = way * frame.tangents[0];
+        const double                t2     = way * frame.tangents[1];
+        const double                height = way * frame.normal;
+        const double                weight = 1. / way.norm_square();
         const std::array<double, 5> row{
           {t1, t2, 0.5 * t1 * t1, t1 * t2, 0.5 * t2 * t2}};
         for (unsigned int a = 0; a < 5; ++a)
@@ -268,8 +268,8 @@ namespace alveolus
             frame = frames.emplace(nearest, fit(surface, nearest)).first;
           const Frame       &f   = frame->second;
           const Tensor<1, 3> way = x[i] - f.origin;
-          const double t1 = way * f.tangents[0], t2 = way * f.tangents[1];
-          const double height = f.h[0] * t1 + f.h[1] * t2 +
+          const double       t1 = way * f.tangents[0], t2 = way * f.tangents[1];
+          const double       height = f.h[0] * t1 + f.h[1] * t2 +
                                 0.5 * f.h[2] * t1 * t1 + f.h[3] * t1 * t2 +
                                 0.5 * f.h[4] * t2 * t2;
           x[i] = f.origin + t1 * f.tangents[0] + t2 * f.tangents[1] +

@@ -53,16 +53,17 @@ namespace alveolus
                       "equilibrium, e.g. after a transfer (costs one assembly "
                       "of forces).",
                       Patterns::Bool());
-    prm.add_parameter("Linear solver",
-                      linear_solver,
-                      "automatic is UMFPACK on one process, MUMPS on several; "
-                      "multigrid is CG with algebraic multigrid (Trilinos ML, rigid "
-                      "motions as near null space), for large meshes in 3D; "
-                      "multigrid GMRES for matrices that are not symmetric. "
-                      "Where the iteration fails, MUMPS takes over, which the "
-                      "log tells.",
-                      Patterns::Selection("automatic|UMFPACK|MUMPS|multigrid|"
-                                          "multigrid GMRES"));
+    prm.add_parameter(
+      "Linear solver",
+      linear_solver,
+      "automatic is UMFPACK on one process, MUMPS on several; "
+      "multigrid is CG with algebraic multigrid (Trilinos ML, rigid "
+      "motions as near null space), for large meshes in 3D; "
+      "multigrid GMRES for matrices that are not symmetric. "
+      "Where the iteration fails, MUMPS takes over, which the "
+      "log tells.",
+      Patterns::Selection("automatic|UMFPACK|MUMPS|multigrid|"
+                          "multigrid GMRES"));
     prm.add_parameter(
       "Linear tolerance",
       linear_tolerance,
@@ -264,9 +265,9 @@ namespace alveolus
     if (system->is_iterative())
       system->set_positions(state.configuration.positions());
     const unsigned int n_replaced = system->n_replaced();
-    const auto &owned = state.configuration.locally_owned;
-    NodalVector correction(state.configuration.make_vector());
-    NodalVector trial(state.configuration.make_vector());
+    const auto        &owned      = state.configuration.locally_owned;
+    NodalVector        correction(state.configuration.make_vector());
+    NodalVector        trial(state.configuration.make_vector());
 
     if (parameters.report_imbalance)
       {

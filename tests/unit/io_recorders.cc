@@ -235,11 +235,10 @@ TEST(RigidMotion, InSpace)
       // A point of the axis moves along it only: (0.1, 0.2, 0.3) a = 0.2
       Point<3> on_axis;
       for (unsigned int d = 0; d < 3; ++d)
-        on_axis[d] = value(row,
-                           std::string("axis of rotation at ") + "xyz"[d] +
-                             " [mm]");
-      const Tensor<1, 3> moved = Point<3>(R * on_axis) +
-                                 Point<3>(0.1, 0.2, 0.3) - on_axis;
+        on_axis[d] =
+          value(row, std::string("axis of rotation at ") + "xyz"[d] + " [mm]");
+      const Tensor<1, 3> moved =
+        Point<3>(R * on_axis) + Point<3>(0.1, 0.2, 0.3) - on_axis;
       EXPECT_LT((moved - 0.2 * axis / 3.).norm(), 1e-10);
       EXPECT_NEAR(value(row, "translation along axis [mm]"), 0.2, 1e-10);
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // mpirun=2
 // The rule that smooths nodes on the surface they lie on: planes follow affine
-// motions of their rim, nodes stay on a sphere, interfaces of blocks of the same
-// material need not.
+// motions of their rim, nodes stay on a sphere, interfaces of blocks of the
+// same material need not.
 #include "rezoning_bench.h"
 
 #include <gtest/gtest.h>
@@ -51,11 +51,9 @@ TEST(SurfaceRule, PlaneFollowsAffineMap)
       const auto x = run(graded, graded, lagrangian);
       EXPECT_EQ(run.report.fraction, 1.);
       EXPECT_GT(run.report.largest_motion, 0.01);
-      EXPECT_LT(bench.distance(x,
-                               [](const Point<3> &X) {
-                                 return affine(grade(X));
-                               }),
-                1e-13);
+      EXPECT_LT(
+        bench.distance(x, [](const Point<3> &X) { return affine(grade(X)); }),
+        1e-13);
     }
 }
 
@@ -99,9 +97,7 @@ TEST(SurfaceRule, Interface)
       x[0] += 0.1 * bubble(X[1], X[2]);
     return x;
   });
-  const auto     on_interface = [](const Point<3> &X) {
-    return near(X[0], 0.5);
-  };
+  const auto on_interface   = [](const Point<3> &X) { return near(X[0], 0.5); };
   for (const bool stays : {true, false})
     {
       Rezoning<3> run(bench);

@@ -33,9 +33,9 @@ namespace alveolus
      * @param region name of the region its cells belong to; blocks may share it
      */
     void
-    add(const std::string                          &region,
-        const Divisions                            &n,
-        const std::function<Place(const Place &)>  &map);
+    add(const std::string                         &region,
+        const Divisions                           &n,
+        const std::function<Place(const Place &)> &map);
 
     /** Name @p name for the vertex at @p place. @throws InputError if none */
     void
@@ -65,10 +65,10 @@ namespace alveolus
     unsigned int
     vertex(const Place &x);
 
-    MeshDescription<3>                            mesh;
-    double                                        tolerance; ///< [mm]
-    std::map<std::array<long, 3>, unsigned int>   at;
-    unsigned int                                  n_tags = 0;
+    MeshDescription<3>                          mesh;
+    double                                      tolerance; ///< [mm]
+    std::map<std::array<long, 3>, unsigned int> at;
+    unsigned int                                n_tags = 0;
   };
 } // namespace alveolus
 
