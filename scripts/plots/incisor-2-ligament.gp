@@ -14,9 +14,9 @@ table(e) = e < -0.31 ? table1(-0.31) + 8.5*(e + 0.31) : table1(e)
 table1(e) = e < -0.25 ? table2(-0.25) + (e + 0.25)*(0.68 + 0.5*7.82*(e + 0.25)/(-0.06)) : table2(e)
 table2(e) = e < 0 ? 0.068*e - 0.5*0.612*e*e/0.25 : e < 0.14 ? 0.068*e + 0.5*1.282*e*e/0.14 : 0.09926 + 8.5*(e - 0.14)
 set title "Compression and tension"
-set xrange [-0.5:0.6]
-set yrange [-4:4]
-set key bottom right
+set xrange [-0.36:0.6]
+set yrange [-2.5:4]
+set key bottom right font ",16" samplen 2
 plot table(x) lt -1 dt 3 title "Table 2", \
      pulled("valanis-landel") using (0.6*column("time [T]")):"top: force z [N]" lt 1 title "Valanis-Landel", \
      pressed("valanis-landel") using (-0.8*column("time [T]")):"top: force z [N]" lt 1 notitle, \

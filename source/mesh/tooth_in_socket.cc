@@ -143,6 +143,16 @@ namespace alveolus
                          "the number " + std::to_string(settings.n_along) +
                            " is odd",
                          "take an even one");
+      for (unsigned int e = 0; e < 2; ++e)
+        if (2 * settings.caps[e] >= settings.n_across)
+          throw InputError(section + (e == 0 ? " / Cap at labial rim"
+                                             : " / Cap at lingual rim"),
+                           std::to_string(settings.caps[e]) +
+                             " layers leave no room between them with " +
+                             std::to_string(settings.n_across) +
+                             " elements across the ligament",
+                           "take fewer than half of `Elements across "
+                           "ligament`");
       const auto outline = [&](const std::string &file,
                                const std::string &parameter) {
         const std::string name = path_below(input_directory, file);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/base/errors.h>
 #include <alveolus/rezoning/node_sets.h>
 #include <alveolus/rezoning/spline_rule.h>
 
@@ -62,9 +63,19 @@ namespace alveolus
     for (const std::string &name : on)
       {
         AnchoredCurve curve(nodes.curve(name, where + "/On"), taken);
-        curve.keep(
-          fit(nodes.gather(positions, curve.curve.nodes), curve.curve.closed)
-            .arc_lengths());
+        // Here it is the mesh as given that has no spline, later on the run
+        try
+          {
+            curve.keep(fit(nodes.gather(positions, curve.curve.nodes),
+                           curve.curve.closed)
+                         .arc_lengths());
+          }
+        catch (const RunError &error)
+          {
+            throw InputError(where + " / On",
+                             "'" + name + "': " + error.what(),
+                             "repair the mesh, or leave this curve out");
+          }
         const auto free = curve.free_nodes();
         touched.insert(touched.end(), free.begin(), free.end());
         curves.push_back(curve);
