@@ -75,8 +75,9 @@ namespace alveolus
               break;
           }
       }
-    // Unless it was quality that asked for it, a remesh may cost a little: where
-    // no step is short enough, other elements than the worst ones are the cause
+    // Unless it was quality that asked for it, a remesh may cost a little:
+    // where no step is short enough, other elements than the worst ones are the
+    // cause
     const double least =
       (for_quality ? 1. : 0.9) * quality.smallest_scaled_jacobian;
     if (!best.model || best.after.smallest_scaled_jacobian <

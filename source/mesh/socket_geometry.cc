@@ -257,7 +257,7 @@ namespace alveolus
       Points
       rim(const Point<2> &a, const Point<2> &b, const unsigned int cap) const
       {
-        Points nodes;
+        Points             nodes;
         const unsigned int n = settings.n_across - 2 * cap;
         for (unsigned int i = 0; i <= n; ++i)
           nodes.push_back(a + (b - a) * (double(i) / n));
@@ -307,10 +307,11 @@ namespace alveolus
                     labial_root,
                     labial_socket,
                     rim(root.front(), socket.front(), settings.caps[0]));
-        const unsigned int lingual = add_curve("rim lingual",
-                                               lingual_root,
-                                               lingual_socket,
-                                               rim(root.back(), socket.back(), settings.caps[1]));
+        const unsigned int lingual =
+          add_curve("rim lingual",
+                    lingual_root,
+                    lingual_socket,
+                    rim(root.back(), socket.back(), settings.caps[1]));
         add_area("ligament",
                  {{socket_curve, false},
                   {lingual, true},

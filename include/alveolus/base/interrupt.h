@@ -15,8 +15,9 @@ namespace alveolus
   namespace Interrupt
   {
     /**
-     * Note signals from now on, forget earlier ones; and let writing beyond a limit of file sizes
-     * fail like writing to a full disk instead of ending the process.
+     * Note signals from now on, forget earlier ones; and let writing beyond a
+     * limit of file sizes fail like writing to a full disk instead of ending
+     * the process.
      */
     void
     install();

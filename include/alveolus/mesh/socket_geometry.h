@@ -10,11 +10,11 @@ namespace alveolus
   /** Lengths [mm] and numbers that turn two outlines into a socket. */
   struct SocketSettings
   {
-    double       thickness    = 0.2; ///< of the ligament
-    unsigned int n_across     = 4;   ///< elements through the ligament
+    double       thickness = 0.2; ///< of the ligament
+    unsigned int n_across  = 4;   ///< elements through the ligament
     /** Layers of the caps at the labial and the lingual rim, see Strip. */
     std::array<unsigned int, 2> caps{{0, 0}};
-    unsigned int n_along      = 250; ///< elements along the root, even
+    unsigned int n_along      = 250;  ///< elements along the root, even
     double       tooth_size   = 0.32; ///< largest edge
     double       bone_size    = 0.9;
     double       tooth_growth = 0.19; ///< of the edge with the distance [-]

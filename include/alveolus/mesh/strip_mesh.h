@@ -13,7 +13,8 @@ namespace alveolus
    * Quads of a four-sided strip from the nodes of its sides, by transfinite
    * interpolation (W. J. Gordon, C. A. Hall, Int. J. Numer. Methods Eng. 7
    * (1973) 461-477) with weights of the ends that fall to zero within a few
-   * widths of the strip, so that a bulging end moves nothing far away. Each end may have a cap of k layers of quads parallel to it,
+   * widths of the strip, so that a bulging end moves nothing far away. Each end
+   * may have a cap of k layers of quads parallel to it,
    *
    *     T_0 ---- T_1 ---- T_2          k = 1, four quads across,
    *      |        |     /  |           two at the end

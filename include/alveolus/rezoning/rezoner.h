@@ -22,7 +22,8 @@ namespace alveolus
    * A node belongs to the first rule, by stage, that touches it. Two rules of
    * one stage that set the same component of the same node contradict each
    * other. After every rule hanging nodes are put back into the middle of what
-   * they hang on. Within a stage a rule builds on what the rules above it proposed.
+   * they hang on. Within a stage a rule builds on what the rules above it
+   * proposed.
    */
   template <int dim>
   class Rezoner
@@ -59,7 +60,7 @@ namespace alveolus
 
   private:
     std::vector<std::pair<std::string, std::unique_ptr<RezoningRule<dim>>>>
-      rules;
+                                       rules;
     std::unique_ptr<HangingNodes<dim>> hanging; ///< since attach()
   };
 } // namespace alveolus
