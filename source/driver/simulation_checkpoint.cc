@@ -94,6 +94,8 @@ namespace alveolus
       remesh_plan->save(blocks);
     if (bone_mass)
       bone_mass->save(*portable, blocks);
+    if (energy_books)
+      energy_books->save(blocks);
     if (reference_outline)
       {
         reference_outline->save(blocks);
@@ -109,7 +111,9 @@ namespace alveolus
                                    totals.subcycles,
                                    totals.unconverged_rezonings,
                                    totals.max_iterations_of_a_step,
-                                   rejected_attempts});
+                                   rejected_attempts,
+                                   totals.most_beyond_bounds,
+                                   findings.n_beyond_bounds});
     blocks.put("extremes",
                BlockFile::Numbers{totals.smallest_quality,
                                   totals.largest_transfer_error});
@@ -189,10 +193,12 @@ namespace alveolus
       remesh_plan->load(blocks);
     if (bone_mass)
       bone_mass->load(*portable, blocks);
+    if (energy_books)
+      energy_books->load(blocks);
 
     const auto &t = blocks.integers("totals");
-    if (t.size() != 9)
-      blocks.refuse("totals", "does not hold 9 integers");
+    if (t.size() != 11)
+      blocks.refuse("totals", "does not hold 11 integers");
     totals.steps                    = t[0];
     totals.rejected                 = t[1];
     totals.iterations               = t[2];
@@ -202,6 +208,8 @@ namespace alveolus
     totals.unconverged_rezonings    = t[6];
     totals.max_iterations_of_a_step = t[7];
     rejected_attempts               = t[8];
+    totals.most_beyond_bounds       = t[9];
+    findings.n_beyond_bounds        = t[10];
     const auto &extremes            = blocks.numbers("extremes");
     const auto &mechanics           = blocks.numbers("last step/mechanics");
     const auto &counts              = blocks.integers("last step/counts");

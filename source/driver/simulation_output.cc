@@ -86,6 +86,13 @@ namespace alveolus
       totals.smallest_quality =
         std::min(totals.smallest_quality, quality.smallest_scaled_jacobian);
     }
+    if (findings.n_beyond_bounds > totals.most_beyond_bounds)
+      {
+        totals.most_beyond_bounds = findings.n_beyond_bounds;
+        log.note(std::to_string(findings.n_beyond_bounds) +
+                 " point(s) beyond the bounds of their history, worst " +
+                 findings.worst);
+      }
     last_row = history_row();
     TimerOutput::Scope scope(timer, "output");
     on_first_process<RunError>(communicator,
@@ -175,6 +182,7 @@ namespace alveolus
       }
     if (model->rezoner)
       row.emplace_back("limited values", totals.limited);
+    row.emplace_back("points beyond bounds", findings.n_beyond_bounds);
     if (remesh_plan)
       row.emplace_back("remeshes", remesh_plan->n_remeshes());
     if (reference_outline)
@@ -187,6 +195,9 @@ namespace alveolus
                            errors[i]);
       }
     row.emplace_back("stored energy [mJ]", mechanics_report.energy);
+    if (energy_books)
+      for (const auto &value : energy_books->record(*model))
+        row.push_back(value);
     const auto seconds = phase_seconds();
     for (const char *const phase : phases)
       row.emplace_back(std::string(phase) + " [s]", seconds.at(phase));
@@ -273,10 +284,11 @@ namespace alveolus
                        : 0.;
     summary["most Newton iterations of a step"] =
       totals.max_iterations_of_a_step;
-    summary["last residual history"]    = mechanics_report.residuals;
-    summary["smallest scaled Jacobian"] = totals.smallest_quality;
-    summary["inverted corners"]         = quality.n_inverted_corners;
-    summary["limited values"]           = totals.limited;
+    summary["last residual history"]     = mechanics_report.residuals;
+    summary["smallest scaled Jacobian"]  = totals.smallest_quality;
+    summary["inverted corners"]          = quality.n_inverted_corners;
+    summary["limited values"]            = totals.limited;
+    summary["most points beyond bounds"] = totals.most_beyond_bounds;
     if (model->rezoner)
       {
         summary["rezonings cut back"]      = totals.cut_back;
@@ -294,6 +306,9 @@ namespace alveolus
         summary["mass through boundaries [mg]"] = bone_mass->through_boundary;
         summary["bone mass balance"]            = bone_mass->balance();
       }
+    if (energy_books)
+      for (const auto &[name, value] : energy_books->totals())
+        summary["energy"][name] = value;
     summary["cells"]    = model->mesh.triangulation->n_global_active_cells();
     summary["unknowns"] = model->state->configuration.dof_handler.n_dofs();
     summary["history [bytes]"]  = history_bytes;

@@ -104,6 +104,8 @@ namespace alveolus
         books->take_over(*bone_mass);
         bone_mass = std::move(books);
       }
+    if (energy_books)
+      energy_books->book_remesh(*model);
     remesh_plan->tried(model->state->time,
                        best.after.smallest_scaled_jacobian,
                        true);
@@ -113,7 +115,8 @@ namespace alveolus
             std::to_string(best.settling.n_iterations) +
             " Newton iterations from an imbalance of " +
             number(best.imbalance, 3));
-    quality = best.after;
+    quality  = best.after;
+    findings = check_state(*model->state, model->regions, false);
     if (reference_outline)
       note_reference_volumes();
     if (totals.steps > 0)
@@ -221,6 +224,9 @@ namespace alveolus
 
     clock.restart();
     settle(result);
+    const StateFindings settled = check_state(state, fresh.regions, false);
+    if (!settled.garbage.empty())
+      throw RunError("Remeshing", settled.garbage, "try other densities");
     result.seconds_settling = clock.wall_time();
     result.after            = fresh.quality();
     return result;

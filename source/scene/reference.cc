@@ -165,7 +165,7 @@ namespace alveolus
       out);
     write_section<RemeshPlan::Parameters>("Remeshing: when", out);
     out << "## Monitor\n\n`Inverted corners` (stop or report), `Minimum "
-           "quality`.\n\n";
+           "quality`, `Energy balance` (books of work and energy).\n\n";
     write_section<StepControl::Parameters>("Time", out);
     write_registry<Recorder<2>>("Records", members, out);
     out << "## Output\n\n`Directory`, `Fields`, `Field interval`.\n\n";

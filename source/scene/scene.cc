@@ -261,6 +261,12 @@ namespace alveolus
                       "A run whose smallest scaled Jacobian falls below this "
                       "stops; -1 is never.",
                       Patterns::Double(-1., 1.));
+    prm.add_parameter("Energy balance",
+                      energy_balance,
+                      "Keep books of work and energy, with columns in the "
+                      "history and totals in the summary (costs one assembly "
+                      "of forces a step).",
+                      Patterns::Bool());
     prm.leave_subsection();
 
     prm.enter_subsection("Time");

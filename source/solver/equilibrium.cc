@@ -223,10 +223,24 @@ namespace alveolus
 
 
   template <int dim>
+  AssemblyResult
+  Equilibrium<dim>::assemble_committed()
+  {
+    const Interval now{state.time, state.time};
+    held_imbalance = nullptr;
+    assembler.begin_step(now);
+    set_constraints(now);
+    return assemble_without_increment();
+  }
+
+
+
+  template <int dim>
   typename Equilibrium<dim>::Imbalance
   Equilibrium<dim>::imbalance(const double t, double &relative)
   {
     const Interval now{t, t};
+    held_imbalance = nullptr;
     assembler.begin_step(now);
     set_constraints(now);
     const AssemblyResult result = assemble_without_increment();
@@ -321,7 +335,10 @@ namespace alveolus
         const double norm  = free_norm(residual_vector);
         const double scale = std::max(result.force_scale, 1e-300);
         report.residuals.push_back(norm / scale);
-        report.energy = result.energy;
+        report.energy       = result.energy;
+        report.energy_moved = result.energy_moved;
+        report.dissipation  = result.dissipation;
+        report.force_scale  = result.force_scale;
         if (!std::isfinite(norm))
           return repeat("the residual is not a finite number");
         if (!lift && (norm <= parameters.tolerance * result.force_scale ||

@@ -82,6 +82,7 @@ namespace alveolus
 
     std::string inverted_corners = "stop";
     double      minimum_quality  = -1.;
+    bool        energy_balance   = true;
 
     StepControl::Parameters time;
 
