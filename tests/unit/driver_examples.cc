@@ -153,9 +153,11 @@ centred()
       {
         const double x = before[c * store.n_points + q][0];
         if (x > 0.125 && x < 0.875)
-          EXPECT_NEAR(store.old_record(c, q)[0],
-                      1. + after[c * store.n_points + q][0],
-                      1e-14);
+          {
+            EXPECT_NEAR(store.old_record(c, q)[0],
+                        1. + after[c * store.n_points + q][0],
+                        1e-14);
+          }
         EXPECT_EQ(store.old_record(c, q)[1], 7.);
       }
 }
