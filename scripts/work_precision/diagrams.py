@@ -10,7 +10,7 @@ from measure import ROOT
 
 COLOURS = ("#b2182b", "#2166ac", "#4d9221", "#e08214", "#8073ac", "#01665e", "#dd3497",
            "#8c510a", "#525252", "#66bd63")
-SMALLEST = 1e-8 # errors below are drawn here
+LEAST = 0.2 # errors below this part of the reference's error bar are drawn there
 
 
 def write_points(name, rows, knob, quantity, limit):
@@ -20,7 +20,8 @@ def write_points(name, rows, knob, quantity, limit):
     for row in rows:
         found = tables.value(row, quantity)
         if row["knob"] == knob and found is not None:
-            error = max(SMALLEST, richardson.relative(found, limit.value))
+            error = max(1e-8, LEAST * limit.error / abs(limit.value),
+                        richardson.relative(found, limit.value))
             lines.append((float(row["user CPU [s]"]), error, row["peak memory [MB]"],
                           row["value"]))
     with open(name, "w", encoding="utf-8") as file:
@@ -59,12 +60,14 @@ def draw(study, rows, references, folder):
     panels.append((*panels[0][:2], 3))
     lines = (len(panels) + 1) // 2
     for kind, knobs in study.diagrams.items():
-        height = 480 * lines + 130
+        odd = len(panels) % 2 > 0 # then the legend takes the last place
+        foot = 70 if odd else 190
+        height = 480 * lines + foot - 60
         commands = [f"load '{ROOT}/scripts/plots/common.gp'",
                     f"set terminal pngcairo size 1600,{height} font 'DejaVu Sans,16' "
                     "linewidth 2 background 'white'",
                     f"set output '{folder}/{study.name}-{kind}.png'",
-                    f"set multiplot layout {lines},2 margins 0.07,0.98,{190 / height},"
+                    f"set multiplot layout {lines},2 margins 0.07,0.98,{foot / height},"
                     f"{1 - 45 / height} spacing 0.09,{115 / height}",
                     "set logscale xy", "set format y '10^{%T}'", "set format x '%g'"]
         with tempfile.TemporaryDirectory() as scratch:
@@ -74,8 +77,11 @@ def draw(study, rows, references, folder):
                     "set xlabel 'CPU seconds' offset 0,0.5" if column == 1
                     else "set xlabel 'peak memory [MB]' offset 0,0.5",
                     "set logscale x" if column == 1 else "unset logscale x",
-                    (f"set key at screen 0.5,{85 / height} center top maxrows 3 samplen 2 "
-                     "spacing 1.1 font ',15'" if number == 0 else "unset key"),
+                    "unset key" if number > 0 else
+                    f"set key at screen 0.56,{(foot + 330) / height} left top maxrows 12 "
+                    "samplen 2 spacing 1.2 font ',16'" if odd else
+                    f"set key at screen 0.5,{85 / height} center top maxrows 3 samplen 2 "
+                    "spacing 1.1 font ',15'",
                     "plot " + curves(scratch, number, rows, knobs, quantity, limit, column)]
             commands.append("unset multiplot")
             result = subprocess.run(["gnuplot"], input="\n".join(commands), text=True,
