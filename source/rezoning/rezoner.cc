@@ -52,7 +52,10 @@ namespace alveolus
       {
         RezoningRule<dim> &rule = *rules[r].second;
         const Stage        now  = stage(rules[r]);
-        rule.attach(nodes, positions, taken, rules[r].first);
+        problems.collect(
+          [&]() { rule.attach(nodes, positions, taken, rules[r].first); });
+        if (!problems.none())
+          continue; // to hear what the others have to say
 
         unsigned int        rival = none;
         NodeId              where = numbers::invalid_dof_index;
@@ -106,6 +109,7 @@ namespace alveolus
             setter.clear();
           }
       }
+    problems.throw_if_any();
   }
 
   template <int dim>

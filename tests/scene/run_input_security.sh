@@ -57,11 +57,12 @@ Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
 Curve Loop(1) = {1:4}; Plane Surface(1) = {1};
 Transfinite Curve {1:4} = 3; Transfinite Surface {1}; Recombine Surface {1};
 Physical Surface("body") = {1};
-Physical Curve("left") = {4}; Physical Curve("right") = {2};
+Physical Curve("left") = {4}; Physical Curve("middle") = {4};
+Physical Curve("right") = {2};
 Physical Curve("bottom") = {1}; Physical Curve("top") = {3};
 END
-sed 's/cube-41.msh\|square-[0-9]*.msh/square.geo/' tests/fuzz/seeds/square.prm \
-  >"$work/square.prm"
+sed "s|square-41.msh|square.geo|; s|include ../../scene|include $PWD/tests/scene|" \
+  tests/fuzz/seeds/square.prm >"$work/square.prm"
 grep -q square.geo "$work/square.prm" || fail "the seed names no mesh file"
 expect 2 "square.geo' is a script of gmsh, which can start programs" \
   --output "$output" --validate "$work/square.prm"
@@ -138,7 +139,7 @@ end
 subsection Records
   set Names = $names
 $(IFS=,; for name in $names; do
-  echo "subsection ${name# }"; echo "set Type = largest corner angle"
+  echo "subsection ${name# }"; echo "set Type = corner quality"
   echo end; done)
 end
 END

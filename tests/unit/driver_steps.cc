@@ -57,7 +57,7 @@ namespace
               Point<dim> sum;
               for (const unsigned int other : others)
                 sum += description.vertices[other];
-              description.vertices[vertex] = sum / others.size();
+              description.vertices[vertex] = sum / (1. * others.size());
             }
       std::vector<RemeshCandidate<dim>> result(1);
       result[0].mesh        = build_mesh(description, old.communicator());
@@ -83,7 +83,7 @@ namespace
   }
 
   /** What a run has left. */
-  struct Run
+  struct Outcome
   {
     bool                                       completed = false;
     nlohmann::json                             summary;
@@ -100,6 +100,13 @@ namespace
       return n;
     }
 
+    /** A count of the summary; 0 if it is not there. */
+    unsigned int
+    number(const std::string &group, const std::string &cause) const
+    {
+      return summary.count(group) == 0 ? 0 : summary[group].value(cause, 0u);
+    }
+
     double
     largest(const std::string &column, const unsigned int first_row = 0) const
     {
@@ -108,8 +115,8 @@ namespace
     }
   };
 
-  /** Run a scene of tests/scene; the same result on every process. */
-  Run
+  /** Outcome a scene of tests/scene; the same result on every process. */
+  Outcome
   run(const std::string &scene_name, const Sets &sets)
   {
     const std::string output =
@@ -125,7 +132,7 @@ namespace
     Log        log(is_first(), true);
     const auto scene        = std::make_shared<Scene<2>>(text);
     scene->output_directory = output;
-    Run result;
+    Outcome result;
     result.completed = Simulation<2>(scene, MPI_COMM_WORLD, log).run();
     MPI_Barrier(MPI_COMM_WORLD);
 
@@ -173,14 +180,18 @@ namespace
 
   /** The pressed block with inner nodes displaced. */
   const Sets distorted = {
-    "Mesh/grid generator/Map=x + 3*sin(pi*x/10)*sin(pi*y/10); y + "
-    "3*sin(pi*x/10)*sin(pi*y/10)",
-    "Remeshing/Type=smoother",
+    "Mesh/grid generator/Function=subdivided_hyper_rectangle",
+    "Mesh/grid generator/Arguments=6, 6 : 0, 0 : 10, 10 : true",
+    "Mesh/grid generator/Refinements=0",
+    "Mesh/grid generator/Region names=body: 3",
+    "Mesh/grid generator/Map=x + 1.8*sin(pi*x/10)*sin(pi*y/10); y + "
+    "1.8*sin(pi*x/10)*sin(pi*y/10)",
     "Time/Initial step=0.5",
     "Time/Minimum step=0.5",
     "Time/Maximum step=0.5",
     "Output/Fields=false",
     "Checkpoint/Write=false"};
+  const Sets smoothed = {"Remeshing/Type=smoother"};
 
   Sets
   operator+(Sets a, const Sets &b)
@@ -251,23 +262,23 @@ TEST(RezoningPlan, EveryStepsOrBelowQuality)
 
 
 
-// The CFL number of the transfer goes with the step: half as much allowed, half
-// as long steps.
+// The CFL number of the transfer goes with the step. It jumps where bone begins
+// to be resorbed; from then on the steps are as short as it asks for.
 TEST(Limits, SweptFraction)
 {
-  const Run    free   = run("academic", academic);
-  const double before = free.largest("swept fraction");
+  const Outcome free   = run("academic", academic);
+  const double  before = free.largest("swept fraction");
   EXPECT_GT(before, 1e-3);
   EXPECT_EQ(free.largest("limited steps"), 0.);
 
   std::ostringstream limit;
   limit << "Time/Largest swept fraction=" << 0.5 * before;
-  const Run limited = run("academic", academic + Sets{limit.str()});
+  const Outcome limited = run("academic", academic + Sets{limit.str()});
   EXPECT_TRUE(limited.completed);
-  EXPECT_LT(limited.largest("swept fraction", 2), 0.6 * before);
-  const unsigned int n = limited.largest("limited steps");
+  EXPECT_LT(limited.columns.at("swept fraction").back(), 0.6 * before);
+  const unsigned int n = limited.columns.at("limited steps").back();
   EXPECT_GT(n, 0u);
-  EXPECT_EQ(limited.summary["steps limited by"]["swept fraction"], n);
+  EXPECT_EQ(limited.number("steps limited by", "swept fraction"), n);
   EXPECT_EQ(limited.count("next step limited by swept fraction"), n);
   EXPECT_GT(limited.columns.at("time [T]").size(),
             free.columns.at("time [T]").size());
@@ -278,35 +289,37 @@ TEST(Limits, SweptFraction)
 // What would be rejected is foreseen.
 TEST(Limits, DensityChange)
 {
-  const Sets bound = academic + Sets{"Remodelling/Maximum density change=0.03"};
-  const Run  free  = run("academic", bound);
+  const Sets longer =
+    academic +
+    Sets{"Time/End=20", "Time/Initial step=2", "Time/Maximum step=2"};
+  const Outcome      free = run("academic", longer);
   const unsigned int rejected =
-    free.summary["rejected attempts by cause"]["density change"];
-  EXPECT_GT(rejected, 1u);
+    free.number("rejected attempts by cause", "density change");
+  EXPECT_GT(rejected, 2u);
   EXPECT_EQ(rejected, free.count("density changed by"));
 
-  const Run foreseen =
-    run("academic", bound + Sets{"Time/Wanted density change=0.02"});
+  const Outcome foreseen =
+    run("academic", longer + Sets{"Time/Wanted density change=0.06"});
   EXPECT_TRUE(foreseen.completed);
-  EXPECT_LT(foreseen.summary["rejected attempts"], rejected);
-  EXPECT_GT(foreseen.summary["steps limited by"]["density change"], 0);
-  EXPECT_LE(foreseen.largest("density change [g/cc]"), 0.03);
+  EXPECT_LT(2 * foreseen.number("rejected attempts by cause", "density change"),
+            rejected);
+  EXPECT_GT(foreseen.number("steps limited by", "density change"), 0u);
 }
 
 
 
 TEST(Limits, LossOfQuality)
 {
-  const Run run_ =
+  const Outcome outcome =
     run("block",
         sheared + Sets{"Time/End=0.5", "Time/Largest loss of quality=0.05"});
-  EXPECT_TRUE(run_.completed);
+  EXPECT_TRUE(outcome.completed);
   const unsigned int n =
-    run_.summary["rejected attempts by cause"]["loss of quality"];
+    outcome.number("rejected attempts by cause", "loss of quality");
   EXPECT_GT(n, 0u);
-  EXPECT_EQ(n, run_.count("more than `Time / Largest loss of quality`"));
+  EXPECT_EQ(n, outcome.count("more than `Time / Largest loss of quality`"));
   double before = 1.; // squares
-  for (const double now : run_.columns.at(quality))
+  for (const double now : outcome.columns.at(quality))
     {
       EXPECT_LE(before - now, 0.05);
       before = now;
@@ -319,16 +332,16 @@ TEST(Limits, LossOfQuality)
 // Once each time it falls below the bound
 TEST(Warning, OncePerCrossing)
 {
-  const Run run_ =
+  const Outcome outcome =
     run("block",
         sheared + Sets{"Time/End=2", "Monitor/Warn below quality=0.8"});
-  EXPECT_TRUE(run_.completed);
-  EXPECT_LT(*std::min_element(run_.columns.at(quality).begin(),
-                              run_.columns.at(quality).end()),
+  EXPECT_TRUE(outcome.completed);
+  EXPECT_LT(*std::min_element(outcome.columns.at(quality).begin(),
+                              outcome.columns.at(quality).end()),
             0.8);
-  EXPECT_EQ(run_.summary["quality warnings"], 2);
-  EXPECT_EQ(run_.count("warning: the smallest scaled Jacobian"), 2u);
-  EXPECT_EQ(run_.count("is above 0.8 again"), 2u);
+  EXPECT_EQ(outcome.summary["quality warnings"], 2);
+  EXPECT_EQ(outcome.count("warning: the smallest scaled Jacobian"), 2u);
+  EXPECT_EQ(outcome.count("is above 0.8 again"), 2u);
   // The bounds that hold where nothing is set
   EXPECT_EQ(RemeshPlan::Parameters().below_quality, 0.2);
   EXPECT_EQ(RemeshPlan::Parameters().accept_quality, 0.3);
@@ -341,30 +354,30 @@ TEST(Warning, OncePerCrossing)
 
 TEST(Remeshing, BelowQuality)
 {
-  const Run    before  = run("block", distorted + Sets{"Remeshing/Type=none"});
-  const double initial = before.columns.at(quality).front();
+  const Outcome before  = run("block", distorted);
+  const double  initial = before.columns.at(quality).front();
   EXPECT_LT(initial, 0.6);
   EXPECT_GT(initial, 0.1);
   std::ostringstream below;
-  below << "Remeshing/Below quality=" << initial + 0.02;
+  below << "Remeshing/Below quality=" << initial + 0.005;
 
   // The mesh is replaced, and the block goes on as squares pressed together.
-  const Run good = run("block", distorted + Sets{below.str()});
+  const Outcome good = run("block", distorted + smoothed + Sets{below.str()});
   EXPECT_TRUE(good.completed);
   EXPECT_EQ(good.summary["remeshes"], 1);
   EXPECT_GT(good.columns.at(quality).back(), 0.95);
 
   // No better mesh: a clear stop, or on request as before
-  const Sets useless = distorted + Sets{below.str(),
+  const Sets    useless = distorted + Sets{below.str(),
                                         "Remeshing/smoother/Sweeps=0",
                                         "Remeshing/Accept quality=0.7"};
-  const Run  stopped = run("block", useless);
+  const Outcome stopped = run("block", useless);
   EXPECT_FALSE(stopped.completed);
   const std::string reason = stopped.summary["reason"];
   EXPECT_NE(reason.find("less than `Remeshing / Accept quality`"),
             std::string::npos)
     << reason;
-  const Run on =
+  const Outcome on =
     run("block", useless + Sets{"Remeshing/If none is acceptable=go on"});
   EXPECT_TRUE(on.completed);
 }
@@ -374,14 +387,13 @@ TEST(Remeshing, BelowQuality)
 // A step that dies of the mesh is repeated on a new one.
 TEST(Remeshing, AfterAStepThatDiedOfTheMesh)
 {
-  const Sets strict  = distorted + Sets{"Remeshing/Below quality=-1",
-                                       "Time/Largest loss of quality=0.001"};
-  const Run  without = run("block", strict + Sets{"Remeshing/Type=none"});
-  EXPECT_FALSE(without.completed);
-  const Run with = run("block", strict);
+  const Sets strict = distorted + Sets{"Time/Largest loss of quality=0.01"};
+  EXPECT_FALSE(run("block", strict).completed);
+  const Outcome with =
+    run("block", strict + smoothed + Sets{"Remeshing/Below quality=-1"});
   EXPECT_TRUE(with.completed);
   EXPECT_EQ(with.summary["remeshes"], 1);
-  EXPECT_EQ(with.summary["rejected attempts by cause"]["loss of quality"], 1);
+  EXPECT_EQ(with.number("rejected attempts by cause", "loss of quality"), 1u);
   EXPECT_EQ(with.count("remesh (no step is short enough)"), 1u);
 }
 
@@ -393,8 +405,9 @@ TEST(Rezoning, EveryThirdStep)
 {
   const Sets frozen =
     academic + Sets{"Time/End=9", "Regions/bone/Remodelling=none"};
-  const Run  always = run("academic", frozen);
-  const Run  third  = run("academic", frozen + Sets{"Rezoning/Every steps=3"});
+  const Outcome always = run("academic", frozen);
+  const Outcome third =
+    run("academic", frozen + Sets{"Rezoning/Every steps=3"});
   EXPECT_TRUE(third.completed);
   const unsigned int n = third.columns.at("time [T]").size();
   EXPECT_EQ(third.summary["steps not rezoned"], n - n / 3);
@@ -405,7 +418,7 @@ TEST(Rezoning, EveryThirdStep)
               force,
               2e-3 * std::abs(force));
 
-  const Run never =
+  const Outcome never =
     run("academic",
         frozen + Sets{"Rezoning/Every steps=0", "Rezoning/Below quality=0.01"});
   EXPECT_EQ(never.summary["steps not rezoned"], n);
