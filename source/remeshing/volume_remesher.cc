@@ -92,6 +92,12 @@ namespace alveolus
       return 1;
     }
 
+    bool
+    can_keep_lattices() const override
+    {
+      return false;
+    }
+
     std::vector<RemeshCandidate<3>>
     candidates(const Configuration<3> &old,
                const std::string      &output_directory,

@@ -79,6 +79,16 @@ namespace alveolus
                        "set it to " +
                          std::to_string(remesher->largest_degree()) +
                          ", or choose another `Remeshing / Type`");
+    if (remesher && !remesher->can_keep_lattices())
+      for (const auto &rule : rezoning_rules)
+        if (rule.object->needs_lattices())
+          throw InputError(
+            text.origin("Rezoning/" + rule.name + "/Type") + ": " + rule.where +
+              " / Type",
+            "the rule '" + rule.type +
+              "' needs regions whose cells form lattices, and the remesher '" +
+              remesher_type + "' makes none",
+            "use Giuliani or barrier for these regions");
     if (output_directory.empty())
       {
         std::string name = text.file_name.substr(
