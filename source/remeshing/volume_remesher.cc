@@ -2,6 +2,7 @@
 #include <alveolus/base/errors.h>
 #include <alveolus/mesh/describe_mesh.h>
 #include <alveolus/mesh/mesh_builder.h>
+#include <alveolus/remeshing/flat_tetrahedra.h>
 #include <alveolus/remeshing/hex_optimiser.h>
 #include <alveolus/remeshing/remesher.h>
 
@@ -195,6 +196,7 @@ namespace alveolus
       const BodySurface           &body = triangles.body.body;
       std::vector<FilledComponent> filled;
       unsigned int                 n_tetrahedra = 0;
+      FlatTetrahedra               flat;
       for (unsigned int c = 0; c < body.components.size(); ++c)
         {
           filled.push_back(
@@ -203,7 +205,8 @@ namespace alveolus
                  with,
                  output_directory,
                  name + "-body-" + std::to_string(c + 1) + attempt,
-                 old.communicator()));
+                 old.communicator(),
+                 flat));
           n_tetrahedra += filled.back().mesh.cells.size();
         }
       HexMesh    hexes  = divide_into_hexahedra(triangles, filled, mesh);
@@ -219,8 +222,9 @@ namespace alveolus
            << triangles.triangles.size() << " triangles (quality "
            << std::setprecision(3) << triangles.smallest_quality() << ") and "
            << n_tetrahedra << " tetrahedra (algorithm " << with.algorithm
-           << ", size factor " << with.size_factor
-           << "), smallest scaled Jacobian " << report.before << ", after "
+           << ", size factor " << with.size_factor << ", " << flat.n_divided
+           << " flat ones divided, " << flat.n_left
+           << " left), smallest scaled Jacobian " << report.before << ", after "
            << report.n_sweeps << " sweeps " << report.after;
       candidate.description      = text.str();
       candidate.mesh.description = text.str();
@@ -234,7 +238,8 @@ namespace alveolus
          const TetrahedraSettings &with,
          const std::string        &output_directory,
          const std::string        &name,
-         const MPI_Comm           &communicator) const
+         const MPI_Comm           &communicator,
+         FlatTetrahedra           &flat) const
     {
       const BodySurface &body = surface.body.body;
       const unsigned int part = body.components[component].part;
@@ -242,6 +247,7 @@ namespace alveolus
       std::map<unsigned int, unsigned int>     number;
       std::vector<Point<3>>                    vertices;
       std::vector<std::array<unsigned int, 3>> triangles;
+      std::vector<unsigned int>                patches;
       for (const auto &triangle : surface.triangles)
         {
           const auto &face =
@@ -264,9 +270,14 @@ namespace alveolus
           if (face.components[0] != component)
             std::swap(local[1], local[2]);
           triangles.push_back(local);
+          patches.push_back(triangle.patch);
         }
       result.mesh = fill_with_tetrahedra(
         vertices, triangles, with, name, output_directory, where, communicator);
+      const FlatTetrahedra found =
+        divide_flat_tetrahedra(result.mesh, triangles, patches);
+      flat.n_divided += found.n_divided;
+      flat.n_left += found.n_left;
       return result;
     }
   };

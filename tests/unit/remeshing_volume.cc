@@ -7,6 +7,7 @@
 #include <alveolus/mesh/mesh_builder.h>
 #include <alveolus/mesh/nodes.h>
 #include <alveolus/mesh/quality.h>
+#include <alveolus/remeshing/flat_tetrahedra.h>
 #include <alveolus/remeshing/remesher.h>
 #include <alveolus/transfer/overlap_transfer.h>
 
@@ -431,6 +432,56 @@ TEST(VolumeRemesher, ProcessesMakeTheSameMesh)
         ASSERT_EQ(mine->vertex_index(v), cell->vertex_index(v));
       ++cell;
     }
+}
+
+
+
+// A roof over two tetrahedra: its ridge, inside of one patch, has one
+// tetrahedron only, and two afterwards; three become the eight over the outer
+// faces.
+TEST(VolumeRemesher, FlatTetrahedraAreDivided)
+{
+  Tetrahedra mesh;
+  mesh.vertices     = {{-1., 0., 0.1},
+                       {1., 0., 0.1},
+                       {0., -1., 0.},
+                       {0., 1., 0.},
+                       {-1., 0., -1.},
+                       {1., 0., -1.}};
+  mesh.cells        = {{{0, 1, 3, 2}}, {{0, 2, 3, 4}}, {{1, 3, 2, 5}}};
+  const auto volume = [&mesh]() {
+    double sum = 0.;
+    for (auto &cell : mesh.cells)
+      {
+        const auto  &x = mesh.vertices;
+        const double six =
+          cross_product_3d(x[cell[1]] - x[cell[0]], x[cell[2]] - x[cell[0]]) *
+          (x[cell[3]] - x[cell[0]]);
+        EXPECT_GT(six, 0.);
+        sum += six / 6.;
+      }
+    return sum;
+  };
+  for (auto &cell : mesh.cells)
+    {
+      const auto &x = mesh.vertices;
+      if (cross_product_3d(x[cell[1]] - x[cell[0]], x[cell[2]] - x[cell[0]]) *
+            (x[cell[3]] - x[cell[0]]) <
+          0.)
+        std::swap(cell[2], cell[3]);
+    }
+  const double before = volume();
+  const auto   report =
+    divide_flat_tetrahedra(mesh, {{{0, 1, 3}}, {{0, 2, 1}}}, {0, 0});
+  EXPECT_EQ(report.n_divided, 1u);
+  EXPECT_EQ(report.n_left, 0u);
+  EXPECT_EQ(mesh.cells.size(), 8u);
+  EXPECT_NEAR(volume(), before, 1e-14);
+  unsigned int n_at_ridge = 0;
+  for (const auto &cell : mesh.cells)
+    n_at_ridge += std::count(cell.begin(), cell.end(), 0u) == 1 &&
+                  std::count(cell.begin(), cell.end(), 1u) == 1;
+  EXPECT_EQ(n_at_ridge, 2u);
 }
 
 
