@@ -184,6 +184,8 @@ namespace alveolus
                          bone_mass->by_volume_change);
         row.emplace_back("mass through boundaries [mg]",
                          bone_mass->through_boundary);
+        if (scene.remesher)
+          row.emplace_back("mass by remeshing [mg]", bone_mass->by_remeshing);
         row.emplace_back("least density [g/cc]", density.first);
         row.emplace_back("greatest density [g/cc]", density.second);
         row.emplace_back("density change [g/cc]",
@@ -328,7 +330,9 @@ namespace alveolus
         summary["mass by remodelling [mg]"]     = bone_mass->by_remodelling;
         summary["mass by volume change [mg]"]   = bone_mass->by_volume_change;
         summary["mass through boundaries [mg]"] = bone_mass->through_boundary;
-        summary["bone mass balance"]            = bone_mass->balance();
+        if (scene.remesher)
+          summary["mass by remeshing [mg]"] = bone_mass->by_remeshing;
+        summary["bone mass balance"] = bone_mass->balance();
       }
     if (energy_books)
       for (const auto &[name, value] : energy_books->totals())

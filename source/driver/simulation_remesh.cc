@@ -43,9 +43,13 @@ namespace alveolus
     Remeshed best;
     if (!candidates.empty())
       {
+        typename OverlapTransfer<dim>::Limits limits;
+        limits.uncovered = scene.remesh_plan.uncovered_part;
         const OverlapTransfer<dim> overlap(old.configuration,
                                            old.history,
-                                           scene.transfer_scheme);
+                                           scene.transfer_scheme,
+                                           "density",
+                                           limits);
         for (auto &candidate : candidates)
           {
             Remeshed tried;
@@ -115,7 +119,9 @@ namespace alveolus
     if (bone_mass)
       {
         auto books = std::make_unique<BoneMass<dim>>(*model->state);
-        books->take_over(*bone_mass);
+        books->take_over(*bone_mass,
+                         best.transfer.content_gained(),
+                         best.transfer.content_after());
         bone_mass = std::move(books);
       }
     if (energy_books)
@@ -319,6 +325,8 @@ namespace alveolus
     row.emplace_back("Newton iterations", taken.settling.n_iterations);
     row.emplace_back("limited values", taken.transfer.n_limited);
     row.emplace_back("sub-cells not covered", taken.transfer.n_uncovered);
+    row.emplace_back("largest uncovered part",
+                     taken.transfer.largest_uncovered_part());
     row.emplace_back("nodes outside", taken.transfer.n_nodes_outside);
     row.emplace_back("their largest distance [mm]",
                      taken.transfer.largest_distance);

@@ -174,6 +174,7 @@ namespace alveolus
       "subsection of that name; its history is transferred by overlap in the "
       "order of `Transfer / Scheme`. When to remesh:",
       out);
+    write_registry_3d<Remesher>(out);
     write_section<RemeshPlan::Parameters>("Remeshing: when", out);
     out << "## Monitor\n\n`Inverted corners` (stop or report), `Minimum "
            "quality`, `Warn below quality`, `Energy balance` (books of work and "
