@@ -107,6 +107,7 @@ namespace alveolus
     const double norm = right_hand_side.l2_norm();
     iterations        = 1;
     rest              = 0.;
+    condition         = 1.;
     if (!multigrid || !(norm > 0.))
       factorise(norm);
     else if (multigrid->solve(matrix, solution, right_hand_side, asked))
@@ -163,9 +164,24 @@ namespace alveolus
     catch (const ExceptionBase &failure)
       {
         throw RunError("linear solver " + name(),
-                       "the matrix could not be factorised",
-                       "check that the boundary conditions hold every body");
+                       "MUMPS could not factorise the matrix",
+                       "check that the conditions hold every body; if memory "
+                       "was too small, use `Linear solver = multigrid`, more "
+                       "processes or a coarser mesh");
       }
+    // MUMPS divides by pivots of the size of round-off without a word: what a
+    // load does then tells. A lower bound of the condition number.
+    const double largest = matrix.linfty_norm() * solution.l2_norm();
+    condition            = largest > 0. ? std::min(1., norm / largest) : 1.;
+  }
+
+
+
+  template <int dim>
+  double
+  DistributedSystem<dim>::pivot_ratio() const
+  {
+    return condition;
   }
 
 

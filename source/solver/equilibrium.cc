@@ -87,7 +87,8 @@ namespace alveolus
     prm.add_parameter(
       "Linear tolerance",
       linear_tolerance,
-      "Relative residual at which iterative linear solvers stop.",
+      "Relative residual at which iterative linear solvers stop; earlier in "
+      "Newton iterations that are still far from the solution.",
       Patterns::Double(1e-15, 0.1));
   }
 

@@ -61,6 +61,8 @@ namespace alveolus
     residual() const override;
     unsigned int
     n_replaced() const override;
+    double
+    pivot_ratio() const override;
     std::string
     name() const override;
 
@@ -80,6 +82,7 @@ namespace alveolus
     unsigned int                             iterations = 1;
     unsigned int                             replaced   = 0;
     double                                   rest       = 0.;
+    double                                   condition  = 1.; ///< reciprocal
   };
 } // namespace alveolus
 
