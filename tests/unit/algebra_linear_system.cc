@@ -23,7 +23,7 @@ using namespace dealii;
 
 namespace
 {
-  /** Linear elasticity (lambda = mu) on the unit square, left side held. */
+  /** Linear elasticity (lambda = mu) on the unit square, its stiff side held. */
   class Block
   {
   public:
@@ -42,7 +42,7 @@ namespace
       constraints.reinit(relevant);
       if (hold)
         VectorTools::interpolate_boundary_values(dofs,
-                                                 0,
+                                                 1,
                                                  Functions::ZeroFunction<2>(2),
                                                  constraints);
       constraints.close();
