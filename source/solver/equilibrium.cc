@@ -15,6 +15,26 @@ namespace alveolus
      * stiffnesses may reach it, too, so that it only explains failures.
      */
     constexpr double nearly_singular = 1e-14;
+
+    /**
+     * Residual asked of an iterative linear solver, relative to the right hand
+     * side: small enough not to be felt by Newton's method (choice 2 of
+     * Eisenstat & Walker, SIAM J. Sci. Comput. 17 (1996) 16-32), and far below
+     * the residual at which Newton's method ends.
+     * @param norm, last_norm nonlinear residual now and before the last
+     *        correction; 0 if there was none
+     * @param enough residual at which Newton's method ends
+     */
+    double
+    linear_tolerance(const double norm,
+                     const double last_norm,
+                     const double enough)
+    {
+      constexpr double largest = 1e-2;
+      const double     ratio   = last_norm > 0. ? norm / last_norm : 1.;
+      return std::max(std::min(largest, 0.5 * ratio * ratio),
+                      1e-2 * enough / norm);
+    }
   } // namespace
 
   template <int dim>
@@ -67,7 +87,8 @@ namespace alveolus
     prm.add_parameter(
       "Linear tolerance",
       linear_tolerance,
-      "Relative residual at which iterative linear solvers stop.",
+      "Relative residual at which iterative linear solvers stop; earlier in "
+      "Newton iterations that are still far from the solution.",
       Patterns::Double(1e-15, 0.1));
   }
 
@@ -332,6 +353,7 @@ namespace alveolus
       }
 
     unsigned int n_before_augmentation = 0;
+    double       last_norm             = 0.;
     for (;;)
       {
         const double norm  = free_norm(residual_vector);
@@ -372,6 +394,13 @@ namespace alveolus
         residual_vector *= -1.;
         if (lift)
           residual_vector += lifted;
+        else
+          system->ask(
+            linear_tolerance(norm,
+                             last_norm,
+                             std::max(parameters.tolerance * result.force_scale,
+                                      parameters.absolute_tolerance)));
+        last_norm = lift ? 0. : norm;
         {
           TimerOutput::Scope scope(timer, "linear solver");
           try
