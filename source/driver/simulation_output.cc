@@ -40,6 +40,12 @@ namespace alveolus
             std::to_string(scene.degree) + ", " +
             std::to_string(model->state->configuration.dof_handler.n_dofs()) +
             " unknowns");
+    if (scene.accuracy().used())
+      {
+        log.say("  accuracy    " + scene.accuracy().chosen());
+        for (const auto &setting : scene.accuracy().settings())
+          log.say("              " + setting);
+      }
     for (unsigned int r = 0; r < model->regions.size(); ++r)
       {
         const auto &definition = scene.regions[r];
@@ -261,9 +267,11 @@ namespace alveolus
       Utilities::MPI::sum(model->state->history.memory_consumption(),
                           communicator);
     nlohmann::ordered_json summary;
-    summary["completed"]         = completed;
-    summary["reason"]            = reason;
-    summary["title"]             = scene.title;
+    summary["completed"] = completed;
+    summary["reason"]    = reason;
+    summary["title"]     = scene.title;
+    if (scene.accuracy().used())
+      summary["accuracy"] = scene.accuracy().chosen();
     summary["time"]              = model->state->time;
     summary["steps"]             = totals.steps;
     summary["rejected attempts"] = totals.rejected;
