@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/algebra/adaptive_tolerance.h>
 #include <alveolus/solver/equilibrium.h>
 
 #include <deal.II/dofs/dof_tools.h>
@@ -394,8 +395,9 @@ namespace alveolus
         residual_vector *= -1.;
         if (lift)
           residual_vector += lifted;
-        else
-          system->ask(
+        else if (auto *adaptive =
+                   dynamic_cast<AdaptiveTolerance *>(system.get()))
+          adaptive->ask(
             linear_tolerance(norm,
                              last_norm,
                              std::max(parameters.tolerance * result.force_scale,

@@ -2,6 +2,7 @@
 #ifndef alveolus_algebra_distributed_system_h
 #define alveolus_algebra_distributed_system_h
 
+#include <alveolus/algebra/adaptive_tolerance.h>
 #include <alveolus/algebra/linear_system.h>
 #include <alveolus/algebra/multigrid.h>
 
@@ -23,7 +24,7 @@ namespace alveolus
    * Solutions of MUMPS are refined by their residual.
    */
   template <int dim>
-  class DistributedSystem : public LinearSystem
+  class DistributedSystem : public LinearSystem, public AdaptiveTolerance
   {
   public:
     enum class Method

@@ -51,12 +51,6 @@ namespace alveolus
     set_positions(const NodalVector & /*positions*/)
     {}
 
-    /** Relative residual that is enough in the next solution; iterative solvers
-     * never go below the tolerance they were made with. */
-    virtual void
-    ask(const double /*relative_residual*/)
-    {}
-
     /** Whether solutions are found by iteration. */
     virtual bool
     is_iterative() const
