@@ -289,7 +289,8 @@ namespace alveolus
         TimerOutput::Scope scope(timer, "monitor");
         findings = check_state(*model->state, model->regions, true);
         if (!findings.garbage.empty())
-          verdict.combine({Verdict::Kind::repeat, findings.garbage});
+          verdict.combine(
+            {Verdict::Kind::repeat, findings.garbage, "history invalid"});
       }
     if (!verdict.repeats() && energy_books)
       {
@@ -305,7 +306,8 @@ namespace alveolus
         if (!(error <= bound))
           verdict.combine({Verdict::Kind::repeat,
                            "forces and reactions have a resultant of " +
-                             number(error) + " of the internal forces"});
+                             number(error) + " of the internal forces",
+                           "resultants"});
       }
     return verdict;
   }
