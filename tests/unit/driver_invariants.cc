@@ -214,6 +214,8 @@ TEST(EnergyBooks, WorkIsThatOfTheRecordedForce)
 // promised, a half is.
 TEST(EnergyBooks, PlasticBar)
 {
+  if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    GTEST_SKIP() << "many steps, nothing that several processes change";
   const Sets sets = {
     "Mesh/grid generator/Arguments=5, 2 : 0, 0 : 26.667, 6.413 "
     ": true"};
@@ -292,6 +294,8 @@ TEST(Independence, BooksRecordsOutputAndCheckpoints)
 // A law at rest and a mesh whose rules leave it with the material are as none.
 TEST(Independence, RemodellingAndRezoning)
 {
+  if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    GTEST_SKIP() << "the same on any number of processes";
   const Sets    lagrangian = with(academic, {"Rezoning/Names="});
   const History none =
     run("academic", with(lagrangian, {"Regions/bone/Remodelling=none"}));
