@@ -63,7 +63,7 @@ namespace alveolus
         for (const auto &entry : at_edge)
           if (entry.second.size() == 1)
             {
-              if (divide(*entry.second.begin()))
+              if (divide(entry.first, *entry.second.begin()))
                 ++report.n_divided;
               else
                 ++report.n_left;
@@ -134,12 +134,29 @@ namespace alveolus
       }
 
       bool
-      divide(const unsigned int flat)
+      divide(const Edge &ridge, const unsigned int flat)
       {
-        std::set<unsigned int> cavity{flat};
-        for (unsigned int f = 0; f < 4; ++f)
-          for (const unsigned int c : at_face.at(sorted(face(cells[flat], f))))
-            cavity.insert(c);
+        // All tetrahedra around the opposite edge
+        std::vector<unsigned int> below;
+        for (const unsigned int v : cells[flat])
+          if (v != ridge.first && v != ridge.second)
+            below.push_back(v);
+        std::set<unsigned int>    cavity{flat};
+        std::vector<unsigned int> front{flat};
+        while (!front.empty())
+          {
+            const unsigned int at = front.back();
+            front.pop_back();
+            for (unsigned int f = 0; f < 4; ++f)
+              {
+                const Triple triple = sorted(face(cells[at], f));
+                if (std::count(triple.begin(), triple.end(), below[0]) != 0 &&
+                    std::count(triple.begin(), triple.end(), below[1]) != 0)
+                  for (const unsigned int c : at_face.at(triple))
+                    if (cavity.insert(c).second)
+                      front.push_back(c);
+              }
+          }
         std::vector<Triple>    outer;
         std::set<unsigned int> corners;
         for (const unsigned int c : cavity)
@@ -155,10 +172,11 @@ namespace alveolus
                   outer.push_back(face(cells[c], f));
               }
           }
-        // From the middle of the flat one into that of the cavity and beyond
+        // From the middle of that edge, where it would cut all of them in two,
+        // towards the middle of the cavity and beyond
         Tensor<1, 3> start, middle;
-        for (const unsigned int v : cells[flat])
-          start += 0.25 * mesh.vertices[v];
+        for (const unsigned int v : below)
+          start += 0.5 * mesh.vertices[v];
         for (const unsigned int v : corners)
           middle += mesh.vertices[v] / double(corners.size());
         double   best = 0.02; // of a tetrahedron with equal edges: 0.7

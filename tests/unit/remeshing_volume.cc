@@ -436,19 +436,18 @@ TEST(VolumeRemesher, ProcessesMakeTheSameMesh)
 
 
 
-// A roof over two tetrahedra: its ridge, inside of one patch, has one
-// tetrahedron only, and two afterwards; three become the eight over the outer
-// faces.
+// A roof over others: its ridge, inside of one patch, has one tetrahedron only,
+// and two afterwards; the four around the edge below are cut in two each.
 TEST(VolumeRemesher, FlatTetrahedraAreDivided)
 {
   Tetrahedra mesh;
-  mesh.vertices     = {{-1., 0., 0.1},
-                       {1., 0., 0.1},
-                       {0., -1., 0.},
-                       {0., 1., 0.},
-                       {-1., 0., -1.},
-                       {1., 0., -1.}};
-  mesh.cells        = {{{0, 1, 3, 2}}, {{0, 2, 3, 4}}, {{1, 3, 2, 5}}};
+  mesh.vertices = {{-1., 0., 0.1},
+                   {1., 0., 0.1},
+                   {0., -1., 0.},
+                   {0., 1., 0.},
+                   {-1., 0., -1.},
+                   {1., 0., -1.}};
+  mesh.cells = {{{0, 1, 3, 2}}, {{0, 2, 3, 4}}, {{1, 3, 2, 5}}, {{2, 3, 4, 5}}};
   const auto volume = [&mesh]() {
     double sum = 0.;
     for (auto &cell : mesh.cells)

@@ -18,8 +18,8 @@ namespace alveolus
    * only: two of its faces are on the patch, and on a curved patch the angle
    * between them becomes 180 degrees when the middles of edges and faces go to
    * the surface, so that hexahedra there would have flat corners whatever nodes
-   * do. The tetrahedron and its neighbours are replaced by those between their
-   * outer faces and a new vertex in the middle.
+   * do. All tetrahedra around its opposite edge are replaced by those between
+   * their outer faces and a new vertex in the middle.
    * @param triangles of the surface of the mesh
    * @param patches   of the triangles
    */
