@@ -106,8 +106,9 @@ def projection(three):
     """Right, up and towards the eye, from a point."""
     if not three:
         return lambda p: (p[0], p[1], 0.0)
-    eye = (0.4784, -0.7654, 0.4305)
-    right = (0.848, 0.53, 0.0)
+    # y is up: the axis of teeth. Planes of symmetry are at z = 0.
+    eye = (0.4784, 0.4305, -0.7654)
+    right = (-0.848, 0.0, -0.53)
     up = (eye[1] * right[2] - eye[2] * right[1], eye[2] * right[0] - eye[0] * right[2],
           eye[0] * right[1] - eye[1] * right[0])
     return lambda p: tuple(sum(a * b for a, b in zip(axis, p)) for axis in (right, up, eye))

@@ -31,7 +31,7 @@ BEGIN = re.compile(r"^(\$ )?([A-Z_]+=\S+ )*(scripts/|build[-/]|cmake|ninja|ctest
                    r"for |while |docker|pip|less |cat |ls )")
 
 
-INLINE = re.compile(r"`((?:scripts/[^`\s]+|(?:build/)?alveolus|cmake|ninja|ctest|python3|mpirun) [^`\n]+)`")
+INLINE = re.compile(r"`((?:[A-Z_]+=[^`\s]+ )*(?:scripts/[^`\s]+|(?:build/)?alveolus|cmake|ninja|ctest|python3|mpirun) [^`\n]+)`")
 
 
 def code_lines(name):
