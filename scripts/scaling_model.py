@@ -18,10 +18,12 @@ LATENCY = 3e-6  # of a message between nodes, with its software [s]
 BANDWIDTH = 1e9  # of one process, with all others of its node sending [byte/s]
 CORE = 1.0  # speed of a core relative to the one that was measured
 
-# The run predicted: steps, and per step assemblies, solutions and the largest
-# number of iterations in which messages are exchanged
-STEPS, ASSEMBLIES, SOLUTIONS = 103, 4.3, 3.2
-ITERATIONS = 7.0  # per solution at the largest measured size
+# The step measured: solutions of linear systems, and iterations of each
+SOLUTIONS, ITERATIONS = 2.33, 7.6
+SWEEPS = 100  # of the rule Giuliani at the largest measured size: a guess
+# The whole run: steps, and how much more a step costs on average than the
+# measured ones, which need fewer Newton iterations
+STEPS, MEAN = 103, 1.6
 SIZES = [1e6, 1e7, 1e8]
 PROCESSES = [16, 64, 256, 1024, 4096]
 
@@ -123,8 +125,7 @@ def main():
                     )
                 if phase == "rezoning":
                     # Sweeps grow with the number of cells along an edge
-                    t *= 1.0
-                    sweeps = 60 * (n / largest) ** (1 / 3)
+                    sweeps = SWEEPS * (n / largest) ** (1 / 3)
                     t += CORE * a * n / p * ((n / largest) ** (1 / 3) - 1)
                     t += sweeps * (
                         26 * LATENCY
@@ -141,7 +142,7 @@ def main():
                     **{f"{k} [s/step]": f"{v:.3g}" for k, v in times.items()},
                     **{
                         "step [s]": f"{total:.3g}",
-                        "run [h]": f"{STEPS * total / 3600:.3g}",
+                        "run [h]": f"{STEPS * MEAN * total / 3600:.3g}",
                         "memory per process [GB]": f"{per_process / 1e9:.3g}",
                         "of it replicated cells [GB]": f"{copied * n / 1e9:.3g}",
                     },
