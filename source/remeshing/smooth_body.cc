@@ -15,10 +15,6 @@ namespace alveolus
   {
     constexpr unsigned int none = BodySurface::none;
 
-    /** Largest angle of the normals at the ends of a new edge [rad]: a chord of
-     * a larger one would leave the body by too much. */
-    constexpr double largest_turn = 0.8;
-
     /** Smallest angle of a triangle as its cosine: the largest one. */
     double
     largest_cosine(const Point<3> &a, const Point<3> &b, const Point<3> &c)
@@ -417,29 +413,10 @@ namespace alveolus
                 ++count[v];
               }
         }
-    std::vector<double> curvature(n, 0.); // largest one, by the normals' turn
-    for (const auto &face : body.faces)
-      for (const unsigned int part : patch_parts[face.patch])
-        for (unsigned int i = 0; i < 4; ++i)
-          {
-            const auto        &normal = normals.at({face.patch, part});
-            const unsigned int a = face.nodes[i], b = face.nodes[(i + 1) % 4];
-            const double       turn =
-              std::acos(std::min(1., normal.at(a) * normal.at(b)));
-            for (const unsigned int v : {a, b})
-              curvature[v] = std::max(curvature[v],
-                                      turn / body.places[part][a].distance(
-                                               body.places[part][b]));
-          }
     sizes.assign(n, 0.);
     for (unsigned int v = 0; v < n; ++v)
-      {
-        const double wanted = factor * sum[v] / count[v];
-        const double curved =
-          curvature[v] > 0. ? largest_turn / curvature[v] : wanted;
-        sizes[v] =
-          std::min(largest, std::max(smallest, std::min(wanted, curved)));
-      }
+      sizes[v] =
+        std::min(largest, std::max(smallest, factor * sum[v] / count[v]));
     // Within each part: all pairs, since the way may lead through the inside
     for (unsigned int p = 0; p < body.is_in.size(); ++p)
       {
