@@ -111,8 +111,9 @@ namespace alveolus
                                    totals.subcycles,
                                    totals.unconverged_rezonings,
                                    totals.max_iterations_of_a_step,
-                                   rejected_attempts,
-                                   totals.most_beyond_bounds,
+                                   rejected_attempts});
+    blocks.put("totals/bounds",
+               BlockFile::Integers{totals.most_beyond_bounds,
                                    findings.n_beyond_bounds});
     blocks.put("extremes",
                BlockFile::Numbers{totals.smallest_quality,
@@ -202,12 +203,12 @@ namespace alveolus
       remesh_plan->load(blocks);
     if (bone_mass)
       bone_mass->load(*portable, blocks);
-    if (energy_books)
+    if (energy_books && blocks.has("energy books"))
       energy_books->load(blocks);
 
     const auto &t = blocks.integers("totals");
-    if (t.size() != 11)
-      blocks.refuse("totals", "does not hold 11 integers");
+    if (t.size() != 9)
+      blocks.refuse("totals", "does not hold 9 integers");
     totals.steps                    = t[0];
     totals.rejected                 = t[1];
     totals.iterations               = t[2];
@@ -217,9 +218,15 @@ namespace alveolus
     totals.unconverged_rezonings    = t[6];
     totals.max_iterations_of_a_step = t[7];
     rejected_attempts               = t[8];
-    totals.most_beyond_bounds       = t[9];
-    findings.n_beyond_bounds        = t[10];
     // Not in checkpoints of earlier versions
+    if (blocks.has("totals/bounds"))
+      {
+        const auto &bounds = blocks.integers("totals/bounds");
+        if (bounds.size() != 2)
+          blocks.refuse("totals/bounds", "does not hold 2 integers");
+        totals.most_beyond_bounds = bounds[0];
+        findings.n_beyond_bounds  = bounds[1];
+      }
     if (blocks.has("totals/further"))
       {
         const auto &further = blocks.integers("totals/further");
