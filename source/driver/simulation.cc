@@ -73,6 +73,7 @@ namespace alveolus
                          number(quality.where[0]) + ", " +
                          number(quality.where[1]) + ") mm");
     totals.smallest_quality = quality.smallest_scaled_jacobian;
+    warn_of_quality();
 
     // Contradictory conditions show in the first step: rather now.
     const Interval first{0., std::min(scene.time.initial_step, scene.time.end)};
@@ -169,7 +170,7 @@ namespace alveolus
             ++totals.rejected;
             log.note("t = " + number(interval.end, 8) + " T rejected (step " +
                      number(dt, 4) + "): " + verdict.reason);
-            if (step_control.rejected(dt))
+            if (step_control.rejected(dt, verdict.cause))
               continue;
             if (remesh_plan && remesh_plan->after_failure(time) &&
                 remesh("no step is short enough", false))
@@ -188,15 +189,15 @@ namespace alveolus
         state_is_whole          = false;
         commit(interval);
         const auto conclude = [&]() {
+          choose_next_step(dt);
           write_history();
-          step_control.accepted(dt, mechanics_report.n_iterations);
           rejected_attempts = 0;
           state_is_whole    = true;
         };
         if (model->rezoner)
           try
             {
-              rezone(*model, start, true);
+              rezone_if_due(start);
             }
           catch (const RunError &)
             {
@@ -288,6 +289,7 @@ namespace alveolus
   Verdict
   Simulation<dim>::judge_corners(const Model<dim> &judged) const
   {
+    // With "report" a mesh may go through anything.
     if (scene.inverted_corners == "report")
       return Verdict{};
     const auto &configuration = judged.state->configuration;
@@ -297,12 +299,12 @@ namespace alveolus
     x.update_ghost_values();
     const QualitySummary<dim> candidate = mesh_quality(configuration, x);
     if (candidate.n_inverted_corners == 0)
-      return Verdict{};
+      return &judged == model.get() ? judge_quality(candidate) : Verdict{};
     std::ostringstream reason;
     reason << candidate.n_inverted_corners
            << " corner(s) of elements turned inside out, the worst near ("
            << candidate.where << ") mm";
-    return {Verdict::Kind::repeat, reason.str()};
+    return {Verdict::Kind::repeat, reason.str(), "inverted corners"};
   }
 
 
@@ -414,6 +416,8 @@ namespace alveolus
         totals.limited +=
           report.n_limited + rezoned_model.make_history_admissible();
         totals.subcycles += report.n_subcycles;
+        if (booked)
+          swept_fraction = report.swept_fraction;
         if (booked && bone_mass)
           bone_mass->book_transfer(state, report);
         if (booked && reference_outline)

@@ -113,6 +113,15 @@ namespace alveolus
     blocks.put("extremes",
                BlockFile::Numbers{totals.smallest_quality,
                                   totals.largest_transfer_error});
+    blocks.put("totals/further",
+               BlockFile::Integers{totals.skipped_rezonings,
+                                   totals.quality_warnings,
+                                   quality_is_low ? 1u : 0u});
+    blocks.put("last step/limits",
+               BlockFile::Numbers{swept_fraction,
+                                  remodelling_report.largest_density_change});
+    if (rezoning_start)
+      portable->save(*rezoning_start, "rezoning/start", blocks);
     blocks.put("last step/residuals", mechanics_report.residuals);
     blocks.put("last step/mechanics",
                BlockFile::Numbers{mechanics_report.energy,
@@ -202,11 +211,33 @@ namespace alveolus
     totals.unconverged_rezonings    = t[6];
     totals.max_iterations_of_a_step = t[7];
     rejected_attempts               = t[8];
-    const auto &extremes            = blocks.numbers("extremes");
-    const auto &mechanics           = blocks.numbers("last step/mechanics");
-    const auto &counts              = blocks.integers("last step/counts");
-    const auto &when                = blocks.numbers("fields/when");
-    const auto &seconds             = blocks.numbers("seconds/phases");
+    // Not in checkpoints of earlier versions
+    if (blocks.has("totals/further"))
+      {
+        const auto &further = blocks.integers("totals/further");
+        const auto &limits  = blocks.numbers("last step/limits");
+        if (further.size() != 3)
+          blocks.refuse("totals/further", "does not hold 3 integers");
+        if (limits.size() != 2)
+          blocks.refuse("last step/limits", "does not hold 2 numbers");
+        totals.skipped_rezonings                  = further[0];
+        totals.quality_warnings                   = further[1];
+        quality_is_low                            = further[2] != 0;
+        swept_fraction                            = limits[0];
+        remodelling_report.largest_density_change = limits[1];
+      }
+    if (blocks.has("rezoning/start"))
+      {
+        rezoning_start =
+          std::make_unique<NodalVector>(state.configuration.make_vector());
+        portable->load(blocks, "rezoning/start", *rezoning_start);
+        rezoning_start->update_ghost_values();
+      }
+    const auto &extremes  = blocks.numbers("extremes");
+    const auto &mechanics = blocks.numbers("last step/mechanics");
+    const auto &counts    = blocks.integers("last step/counts");
+    const auto &when      = blocks.numbers("fields/when");
+    const auto &seconds   = blocks.numbers("seconds/phases");
     if (extremes.size() != 2)
       blocks.refuse("extremes", "does not hold 2 numbers");
     if (mechanics.size() != 2)

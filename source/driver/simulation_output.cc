@@ -91,6 +91,7 @@ namespace alveolus
       quality = model->quality();
       totals.smallest_quality =
         std::min(totals.smallest_quality, quality.smallest_scaled_jacobian);
+      warn_of_quality();
     }
     last_row = history_row();
     TimerOutput::Scope scope(timer, "output");
@@ -159,6 +160,10 @@ namespace alveolus
       row.emplace_back("linear iterations",
                        mechanics_report.n_linear_iterations);
     row.emplace_back("rejected attempts", rejected_attempts);
+    unsigned int n_limited = 0;
+    for (const auto &entry : step_control.limited())
+      n_limited += entry.second;
+    row.emplace_back("limited steps", n_limited);
     row.emplace_back("smallest scaled Jacobian",
                      quality.smallest_scaled_jacobian);
     row.emplace_back("inverted corners", quality.n_inverted_corners);
@@ -174,13 +179,18 @@ namespace alveolus
                          bone_mass->through_boundary);
         row.emplace_back("least density [g/cc]", density.first);
         row.emplace_back("greatest density [g/cc]", density.second);
+        row.emplace_back("density change [g/cc]",
+                         remodelling_report.largest_density_change);
         row.emplace_back("points at least density",
                          remodelling_report.n_at_lower_bound);
         row.emplace_back("points at greatest density",
                          remodelling_report.n_at_upper_bound);
       }
     if (model->rezoner)
-      row.emplace_back("limited values", totals.limited);
+      {
+        row.emplace_back("swept fraction", swept_fraction);
+        row.emplace_back("limited values", totals.limited);
+      }
     if (remesh_plan)
       row.emplace_back("remeshes", remesh_plan->n_remeshes());
     if (reference_outline)
@@ -275,6 +285,11 @@ namespace alveolus
     summary["time"]              = model->state->time;
     summary["steps"]             = totals.steps;
     summary["rejected attempts"] = totals.rejected;
+    for (const auto &[cause, n] : step_control.rejections())
+      summary["rejected attempts by cause"][cause] = n;
+    for (const auto &[cause, n] : step_control.limited())
+      summary["steps limited by"][cause] = n;
+    summary["quality warnings"]  = totals.quality_warnings;
     summary["Newton iterations"] = totals.iterations;
     summary["Newton iterations per step"] =
       totals.steps > 0 ? static_cast<double>(totals.iterations) / totals.steps
@@ -288,6 +303,7 @@ namespace alveolus
     if (model->rezoner)
       {
         summary["rezonings cut back"]      = totals.cut_back;
+        summary["steps not rezoned"]       = totals.skipped_rezonings;
         summary["rezonings not converged"] = totals.unconverged_rezonings;
         summary["transfer sub-cycles"]     = totals.subcycles;
       }
@@ -316,9 +332,11 @@ namespace alveolus
     summary["threads"]    = MultithreadInfo::n_threads();
     summary["versions"]["alveolus"] = ALVEOLUS_VERSION;
     summary["versions"]["deal.II"]  = DEAL_II_PACKAGE_VERSION;
+    // Whatever bytes a title or a message holds
+    const auto quiet = nlohmann::ordered_json::error_handler_t::replace;
     on_first_process<RunError>(communicator, [&]() {
       write_text_file(scene.output_directory + "/summary.json",
-                      summary.dump(2) + "\n");
+                      summary.dump(2, ' ', false, quiet) + "\n");
     });
     if (completed)
       log.say("Completed in " + number(wall_time, 4) +

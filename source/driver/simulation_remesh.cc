@@ -75,6 +75,19 @@ namespace alveolus
               break;
           }
       }
+    const double reached =
+      best.model ? best.after.smallest_scaled_jacobian : -1.;
+    if (for_quality && reached < scene.remesh_plan.accept_quality &&
+        scene.remesh_plan.if_none_is_acceptable == "stop")
+      throw RunError(
+        place,
+        "the smallest scaled Jacobian is " +
+          number(quality.smallest_scaled_jacobian, 4) + ", and " +
+          (best.model ? "the best new mesh has " + number(reached, 4) +
+                          ", less than `Remeshing / Accept quality`"
+                      : std::string("there is no new mesh")),
+        "resume with other densities, with a lower `Accept quality`, or with "
+        "`If none is acceptable = go on`; or remesh earlier (`Below quality`)");
     // Unless it was quality that asked for it, a remesh may cost a little:
     // where no step is short enough, other elements than the worst ones are the
     // cause
@@ -95,6 +108,7 @@ namespace alveolus
       last_row.empty() ? history_row() : last_row;
     state_is_whole = false;
     portable.reset(); // numbers the old mesh
+    rezoning_start.reset();
     model            = std::move(best.model);
     mechanics_report = best.settling;
     totals.limited += best.transfer.n_limited;

@@ -37,8 +37,15 @@ namespace alveolus
                       accept_quality,
                       "A new mesh is taken if its smallest scaled Jacobian in "
                       "equilibrium is at least this; else the best one that "
-                      "is better than the old mesh.",
+                      "is better than the old mesh, unless `If none is "
+                      "acceptable` forbids.",
                       Patterns::Double(-1., 1.));
+    prm.add_parameter("If none is acceptable",
+                      if_none_is_acceptable,
+                      "After a remesh for quality that no candidate reached "
+                      "`Accept quality`: stop the run, or go on with the best "
+                      "mesh there is.",
+                      Patterns::Selection("stop|go on"));
     prm.add_parameter("After failure",
                       after_failure,
                       "Also remesh where no step is short enough, once per "

@@ -250,14 +250,16 @@ namespace alveolus
   {
     held_imbalance    = held;
     bool       solved = false;
-    const auto repeat = [&](const std::string &reason) {
+    const auto repeat = [&](const std::string &reason,
+                            const std::string &cause) {
       // A body that nothing holds goes anywhere: what comes of it is no cause.
       const bool singular = solved && system->pivot_ratio() < nearly_singular;
       return Verdict{Verdict::Kind::repeat,
                      reason + (singular ? " (the matrix is singular but for "
                                           "round-off: check that the "
                                           "conditions hold every body)"
-                                        : "")};
+                                        : ""),
+                     cause};
     };
     assembler.begin_step(interval);
     set_constraints(interval);
@@ -290,7 +292,7 @@ namespace alveolus
         result = assemble(increment, true, false);
         lift   = false;
         if (!result.good)
-          return repeat(result.reason);
+          return repeat(result.reason, "material or mesh");
       }
     else if (parameters.predictor == "extrapolated" && state.last_step > 0.)
       {
@@ -312,7 +314,7 @@ namespace alveolus
         increment.update_ghost_values();
         result = assemble(increment, true, true);
         if (!result.good)
-          return repeat(result.reason);
+          return repeat(result.reason, "material or mesh");
       }
 
     unsigned int n_before_augmentation = 0;
@@ -323,7 +325,7 @@ namespace alveolus
         report.residuals.push_back(norm / scale);
         report.energy = result.energy;
         if (!std::isfinite(norm))
-          return repeat("the residual is not a finite number");
+          return repeat("the residual is not a finite number", "Newton");
         if (!lift && (norm <= parameters.tolerance * result.force_scale ||
                       norm <= parameters.absolute_tolerance))
           {
@@ -334,20 +336,21 @@ namespace alveolus
               }
             catch (const RunError &error)
               {
-                return repeat(error.what());
+                return repeat(error.what(), "contact");
               }
             ++report.n_augmentations;
             n_before_augmentation = report.n_iterations;
             result                = assemble(increment, true, false);
             if (!result.good)
-              return repeat(result.reason);
+              return repeat(result.reason, "material or mesh");
             continue;
           }
         const unsigned int n = report.n_iterations - n_before_augmentation;
         if (n >= parameters.max_iterations)
           return repeat("Newton did not converge in " + std::to_string(n) +
-                        " iterations (residual " +
-                        Utilities::to_string(norm / scale) + ")");
+                          " iterations (residual " +
+                          Utilities::to_string(norm / scale) + ")",
+                        "Newton");
 
         residual_vector *= -1.;
         if (lift)
@@ -361,7 +364,7 @@ namespace alveolus
             }
           catch (const RunError &error)
             {
-              return repeat(error.what());
+              return repeat(error.what(), "linear solver");
             }
         }
         ++report.n_iterations;
@@ -406,7 +409,7 @@ namespace alveolus
                  halvings == parameters.max_line_search))
               break;
             if (lift || halvings == parameters.max_line_search)
-              return repeat(result.reason);
+              return repeat(result.reason, "material or mesh");
             fraction /= 2.;
           }
         report.n_line_search += halvings;

@@ -230,7 +230,8 @@ namespace alveolus
               {
                 verdict = {Verdict::Kind::repeat,
                            "mechanics and remodelling did not agree in " +
-                             std::to_string(n - 1) + " iterations"};
+                             std::to_string(n - 1) + " iterations",
+                           "coupling"};
                 break;
               }
             change = feed_back();
@@ -273,14 +274,14 @@ namespace alveolus
       }
 
     if (!remodelling.failure.empty())
-      return {Verdict::Kind::repeat, remodelling.failure};
+      return {Verdict::Kind::repeat, remodelling.failure, "remodelling"};
     if (remodelling.largest_density_change > parameters.max_density_change)
       {
         std::ostringstream reason;
         reason << "density changed by " << remodelling.largest_density_change
                << " g/cc in a step, more than "
                << parameters.max_density_change;
-        return {Verdict::Kind::repeat, reason.str()};
+        return {Verdict::Kind::repeat, reason.str(), "density change"};
       }
     return verdict;
   }

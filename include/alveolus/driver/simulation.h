@@ -83,6 +83,8 @@ namespace alveolus
       unsigned int steps = 0, rejected = 0, iterations = 0;
       unsigned int limited = 0, cut_back = 0, subcycles = 0;
       unsigned int unconverged_rezonings    = 0;
+      unsigned int skipped_rezonings        = 0;
+      unsigned int quality_warnings         = 0;
       unsigned int max_iterations_of_a_step = 0;
       double       smallest_quality         = 1.;
       double       largest_transfer_error   = 0.;
@@ -98,6 +100,25 @@ namespace alveolus
     rezone(Model<dim>        &rezoned_model,
            const NodalVector &start,
            const bool         booked);
+
+    // simulation_steps.cc:
+    /** Reject what takes too much of the quality of the mesh. */
+    Verdict
+    judge_quality(const QualitySummary<dim> &candidate) const;
+    /** Choose the next step by what was measured in the one of length @p dt. */
+    void
+    choose_next_step(const double dt);
+    /** A line in the log when the quality has fallen below the bound. */
+    void
+    warn_of_quality();
+    /**
+     * Rezone if the plan asks for it; else remember where the mesh was, since
+     * rules count from the last rezoning.
+     * @param start positions before the step
+     */
+    void
+    rezone_if_due(const NodalVector &start);
+
     /** What became of one candidate of a remesh. */
     struct Remeshed
     {
@@ -222,9 +243,13 @@ namespace alveolus
     double                            next_field_time = 0.;
     double                            last_field_time = -1.;
 
-    EquilibriumReport   mechanics_report;
-    RemodellingSummary  remodelling_report;
-    RezoningReport      rezoning_report;
+    EquilibriumReport  mechanics_report;
+    RemodellingSummary remodelling_report;
+    RezoningReport     rezoning_report;
+    double             swept_fraction = 0.; ///< of the last step's transfer
+    /** Positions after the last rezoning, if steps were not rezoned since. */
+    std::unique_ptr<NodalVector> rezoning_start;
+    bool                quality_is_low = false; ///< and the log has told it
     QualitySummary<dim> quality;
     unsigned int        rejected_attempts = 0; ///< of the current step
     Totals              totals;
