@@ -13,8 +13,7 @@ namespace alveolus
   /**
    * Shape gradients and weights of the mesh x_n at all quadrature points of the
    * owned cells. The mesh stands still during the equilibrium iterations of a
-   * step, so they are computed once a step through FEValues and kept in flat
-   * arrays.
+   * step, so they are computed once a step and kept in flat arrays.
    */
   template <int dim>
   class StepGeometry

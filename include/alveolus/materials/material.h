@@ -32,6 +32,12 @@ namespace alveolus
 
     /** Stored energy per volume of the undeformed material [MPa]. */
     double energy = 0.;
+
+    /**
+     * Set by the caller: the deformation is one of plane strain, so that the
+     * tangent is only asked for k, l < 2 and for k = l = 2.
+     */
+    bool plane_strain = false;
   };
 
   /**

@@ -79,9 +79,8 @@ namespace alveolus
     std::vector<std::array<unsigned int, 4>> quads; ///< lexicographic
     std::vector<std::vector<unsigned int>>   ring;  ///< nodes in common quads
     std::vector<Place>                       initial;
-    std::unique_ptr<dealii::SparsityPattern> pattern;
-    std::unique_ptr<dealii::SparseMatrix<double>> matrix;
-    std::unique_ptr<Umfpack>                      factors;
+    CsrMatrix                                matrix;
+    std::unique_ptr<Umfpack>                 factors;
   };
 } // namespace alveolus
 

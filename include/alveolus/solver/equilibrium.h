@@ -23,7 +23,9 @@ namespace alveolus
     double              linear_residual     = 0.; ///< relative, the largest
     unsigned int        n_direct_instead    = 0;  ///< failed iterations
     unsigned int        n_augmentations     = 0;  ///< of multipliers
-    double              energy              = 0.; ///< stored [mJ (per mm)]
+    /** Iterations after the one that was expected to be the last. */
+    unsigned int n_late_matrices = 0;
+    double       energy          = 0.; ///< stored [mJ (per mm)]
     /** L1 norm of the residual before the step over the internal forces. */
     double imbalance = 0.;
   };
@@ -116,6 +118,13 @@ namespace alveolus
       return system->name();
     }
 
+    /** The matrix and its solver, for what they tell. */
+    LinearSystem &
+    linear_system()
+    {
+      return *system;
+    }
+
   private:
     void
     set_constraints(const Interval &interval);
@@ -132,6 +141,10 @@ namespace alveolus
     free_work(const NodalVector &u, const NodalVector &v) const;
     AssemblyResult
     assemble(const NodalVector &du, const bool matrix, const bool lift);
+    /** Whether one more iteration should do, from the residuals so far. */
+    bool
+    expect_convergence(const std::vector<double> &residuals,
+                       const std::size_t          first);
     /** Residual without increment under the loads already begun. */
     AssemblyResult
     assemble_without_increment();
@@ -149,6 +162,8 @@ namespace alveolus
     NodalVector               residual_vector;
     NodalVector               lifted;
     const Imbalance          *held_imbalance = nullptr;
+    /** c of r_{k+1} = c r_k^2 for relative residuals; 0 is unknown. */
+    double contraction = 0.;
   };
 } // namespace alveolus
 
