@@ -54,6 +54,7 @@ namespace alveolus
       if (options.validate)
         {
           simulation.describe();
+          simulation.describe_names();
           return 0;
         }
       return simulation.run() ? 0 : 1;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace alveolus
 {
@@ -14,20 +15,12 @@ namespace alveolus
   {
     constexpr std::size_t least_points = 8;
 
+    constexpr double smallest_size = 0.5, largest_size = 1000.; // [mm]
+
     double
     cross(const Tensor<1, 2> &a, const Tensor<1, 2> &b)
     {
       return a[0] * b[1] - a[1] * b[0];
-    }
-
-    double
-    area_of(const std::vector<Point<2>> &polygon)
-    {
-      double area = 0.;
-      for (std::size_t i = 0; i < polygon.size(); ++i)
-        area += 0.5 * cross(polygon[i] - Point<2>(),
-                            polygon[(i + 1) % polygon.size()] - Point<2>());
-      return area;
     }
 
     /** Whether c lies in the box of the line from a to b. */
@@ -102,61 +95,97 @@ namespace alveolus
 
 
 
-  Outline
-  read_outline(const std::string &text, const std::string &source)
+  double
+  signed_area(const std::vector<Point<2>> &polygon)
   {
-    Outline outline;
-    outline.source = source;
-    // Columns may be parted by commas, semicolons or blanks.
-    std::string blanked = text;
-    for (char &c : blanked)
-      if (c == ',' || c == ';')
-        c = ' ';
-    LineReader reader(blanked, source);
-    bool       heading_possible = true;
-    while (reader.advance())
-      {
-        const char first = reader.all().front();
-        if (first == '#')
-          continue;
-        const bool is_number = (first >= '0' && first <= '9') || first == '-' ||
-                               first == '+' || first == '.';
-        if (!is_number && heading_possible)
-          {
-            heading_possible = false;
-            continue;
-          }
-        heading_possible = false;
-        Point<2> p;
-        p[0] = reader.take_coordinate();
-        p[1] = reader.take_coordinate();
-        outline.points.push_back(p);
-        outline.labels.emplace_back(reader.remainder());
-        outline.lines.push_back(reader.number);
-      }
+    double area = 0.;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      area += 0.5 * cross(polygon[i] - polygon[0],
+                          polygon[(i + 1) % polygon.size()] - polygon[0]);
+    return area;
+  }
 
-    const auto drop_last = [&outline]() {
-      outline.points.pop_back();
-      outline.labels.pop_back();
-      outline.lines.pop_back();
+
+
+  Point<2>
+  centroid_of(const std::vector<Point<2>> &polygon)
+  {
+    Tensor<1, 2> moment;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+      {
+        const Tensor<1, 2> a = polygon[i] - polygon[0];
+        const Tensor<1, 2> b = polygon[(i + 1) % polygon.size()] - polygon[0];
+        moment += cross(a, b) / 6. * (a + b);
+      }
+    return polygon[0] + moment / signed_area(polygon);
+  }
+
+
+
+  Outline
+  checked_outline(Outline outline)
+  {
+    const std::string &source = outline.source;
+    const auto         erase  = [&outline](const std::size_t i) {
+      outline.points.erase(outline.points.begin() + i);
+      outline.labels.erase(outline.labels.begin() + i);
+      outline.lines.erase(outline.lines.begin() + i);
     };
-    if (outline.points.size() > 1 &&
-        outline.points.front() == outline.points.back())
-      drop_last();
+    const auto place = [&outline, &source](const std::size_t i) {
+      return source + ", line " + std::to_string(outline.lines[i]);
+    };
+    Tensor<1, 2> extent;
+    for (unsigned int d = 0; d < 2 && !outline.points.empty(); ++d)
+      {
+        const auto range =
+          std::minmax_element(outline.points.begin(),
+                              outline.points.end(),
+                              [d](const Point<2> &a, const Point<2> &b) {
+                                return a[d] < b[d];
+                              });
+        extent[d] = (*range.second)[d] - (*range.first)[d];
+      }
+    const double same = 1e-7 * extent.norm();
+    const auto   meet = [&outline, same](const std::size_t i) {
+      return outline.points[i].distance(
+               outline.points[(i + 1) % outline.points.size()]) <= same;
+    };
+    if (outline.points.size() > 1 && meet(outline.points.size() - 1))
+      {
+        erase(outline.points.size() - 1);
+        outline.remarks.emplace_back("the first point is repeated at the end");
+      }
+    // Of repeated points the last one stays: its label is that of the line.
+    unsigned int n_repeated = 0;
+    for (std::size_t i = 0; i + 1 < outline.points.size();)
+      if (meet(i))
+        {
+          erase(i);
+          ++n_repeated;
+        }
+      else
+        ++i;
+    if (n_repeated > 0)
+      outline.remarks.push_back(std::to_string(n_repeated) +
+                                " repeated points left out");
     const std::size_t n = outline.points.size();
     if (n < least_points)
       throw InputError(source,
                        "an outline of " + std::to_string(n) + " points",
                        "give at least " + std::to_string(least_points) +
                          ", one a line as x, y [mm] and, if wanted, a label");
-    const auto place = [&outline, &source](const std::size_t i) {
-      return source + ", line " + std::to_string(outline.lines[i]);
-    };
-    for (std::size_t i = 0; i < n; ++i)
-      if (outline.points[i] == outline.points[(i + 1) % n])
-        throw InputError(place((i + 1) % n),
-                         "the point is the same as the one before it",
-                         "remove one of them");
+    const double size = std::max(extent[0], extent[1]);
+    if (size < smallest_size || size > largest_size)
+      {
+        std::ostringstream text;
+        text.precision(3);
+        text << "the outline is " << extent[0] << " x " << extent[1]
+             << " mm in size";
+        throw InputError(source,
+                         text.str(),
+                         "lengths are in mm: set `Outline unit` to that of the "
+                         "file");
+      }
     std::size_t i, j;
     if (find_crossing(outline.points, i, j))
       throw InputError(place(i),
@@ -166,8 +195,7 @@ namespace alveolus
                          std::to_string(outline.lines[j]),
                        "list the points in the order in which they follow "
                        "each other, each once");
-    const double area = area_of(outline.points);
-    if (area < 0.)
+    if (signed_area(outline.points) < 0.)
       {
         std::reverse(outline.points.begin(), outline.points.end());
         std::reverse(outline.lines.begin(), outline.lines.end());
@@ -176,8 +204,78 @@ namespace alveolus
         std::rotate(outline.labels.begin(),
                     outline.labels.begin() + 1,
                     outline.labels.end());
+        outline.remarks.emplace_back("clockwise, turned round");
       }
     return outline;
+  }
+
+
+
+  Outline
+  read_outline(const std::string &text,
+               const std::string &source,
+               const double       unit)
+  {
+    Outline outline;
+    outline.source = source;
+    // Columns may be parted by commas, semicolons or blanks; where there are
+    // semicolons, commas are those of decimal numbers.
+    std::string blanked = text;
+    if (blanked.compare(0, 3, "\xef\xbb\xbf") == 0) // mark of UTF-8
+      blanked.erase(0, 3);
+    bool comment = false, semicolons = false;
+    for (std::size_t i = 0; i < blanked.size(); ++i)
+      {
+        if (i == 0 || blanked[i - 1] == '\n')
+          comment = blanked[i] == '#';
+        semicolons = semicolons || (!comment && blanked[i] == ';');
+      }
+    for (char &c : blanked)
+      if (c == ',')
+        c = semicolons ? '.' : ' ';
+      else if (c == ';')
+        c = ' ';
+    LineReader reader(blanked, source);
+    bool       heading_possible = true;
+    const auto begins_number    = [](const std::string_view word) {
+      const char first = word.front();
+      return (first >= '0' && first <= '9') || first == '-' || first == '+' ||
+             first == '.';
+    };
+    while (reader.advance())
+      {
+        if (reader.all().front() == '#')
+          continue;
+        if (!begins_number(reader.all()) && heading_possible)
+          {
+            heading_possible = false;
+            continue;
+          }
+        heading_possible = false;
+        Point<2> p;
+        p[0] = unit * reader.take_coordinate();
+        p[1] = unit * reader.take_coordinate();
+        outline.points.push_back(p);
+        outline.labels.emplace_back(reader.remainder());
+        outline.lines.push_back(reader.number);
+        const std::string &label = outline.labels.back();
+        if (!label.empty() && begins_number(label) &&
+            label != outline.labels.front())
+          reader.fail("a third number, '" + label +
+                        "', that is not the same in "
+                        "all lines",
+                      "an outline lies in a plane: give x, y and, if wanted, a "
+                      "label that does not begin with a digit; closed surfaces "
+                      "come as STL files");
+      }
+    if (!outline.labels.empty() && !outline.labels.front().empty() &&
+        begins_number(outline.labels.front()))
+      {
+        outline.remarks.emplace_back("the third numbers left out");
+        for (std::string &label : outline.labels)
+          label.clear();
+      }
+    return checked_outline(std::move(outline));
   }
 
 

@@ -67,6 +67,7 @@ namespace alveolus
         , bone(bone, settings.corner_angle)
       {
         find_margins();
+        find_upwards();
         make_root();
         check_socket();
         make_ligament();
@@ -84,6 +85,7 @@ namespace alveolus
       // Arc lengths of the margins on both outlines; ends beyond the beginnings
       double root_begin = 0., root_end = 0., bone_begin = 0., bone_end = 0.;
       Points root, socket;
+      double upwards = 1.; // +1: the crown is above the root, -1: below
 
       unsigned int labial_root, lingual_root, labial_socket, lingual_socket;
       unsigned int root_curve, socket_curve;
@@ -178,6 +180,28 @@ namespace alveolus
           root_end += tooth.length();
         if (bone_end < bone_begin)
           bone_end += bone.length();
+      }
+
+      /** Teeth of the upper jaw have their crown below. */
+      void
+      find_upwards()
+      {
+        const auto mean = [this](const double begin, const double end) {
+          double sum = 0.;
+          for (unsigned int i = 0; i < n_samples; ++i)
+            sum +=
+              tooth.point(begin + (end - begin) * (i + 0.5) / n_samples)[1];
+          return sum / n_samples;
+        };
+        if (mean(root_end, root_begin + tooth.length()) <
+            mean(root_begin, root_end))
+          upwards = -1.;
+      }
+
+      double
+      height(const Point<2> &p) const // towards the incisal edge
+      {
+        return upwards * p[1];
       }
 
       void
@@ -296,8 +320,8 @@ namespace alveolus
         result.point_names["apex"] =
           *std::min_element(root.begin(),
                             root.end(),
-                            [](const Point<2> &a, const Point<2> &b) {
-                              return a[1] < b[1];
+                            [this](const Point<2> &a, const Point<2> &b) {
+                              return height(a) < height(b);
                             });
         root_curve = add_curve("root", labial_root, lingual_root, root);
         socket_curve =
@@ -368,7 +392,7 @@ namespace alveolus
         double     lowest   = std::numeric_limits<double>::max();
         for (unsigned int i = 0; i < n_samples; ++i)
           lowest =
-            std::min(lowest, bone.point(bone.length() * i / n_samples)[1]);
+            std::min(lowest, height(bone.point(bone.length() * i / n_samples)));
         const auto name = [&](const double s) -> std::string {
           const double to_labial = s - bone_begin, to_lingual = bone_end - s;
           const std::string side =
@@ -377,7 +401,7 @@ namespace alveolus
             return bone.label(s) == "crest" ? "crest " + side : bone.label(s);
           if (std::min(to_labial, to_lingual) < settings.crest_length)
             return "crest " + side;
-          return bone.point(s)[1] < lowest + settings.base_height
+          return height(bone.point(s)) < lowest + settings.base_height
                    ? "bone base"
                    : "bone surface";
         };
@@ -403,19 +427,20 @@ namespace alveolus
         for (unsigned int i = 0; i <= n_samples; ++i)
           {
             const double s = begin + (end - begin) * i / n_samples;
-            const double y = tooth.point(s)[1];
+            const double y = height(tooth.point(s));
             if (y > highest)
               {
                 highest = y;
                 top     = s;
               }
           }
-        const double margin = std::max(root.front()[1], root.back()[1]);
-        const auto   name   = [&](const double s) -> std::string {
+        const double margin =
+          std::max(height(root.front()), height(root.back()));
+        const auto name = [&](const double s) -> std::string {
           const std::string side = s < top ? "lingual" : "labial";
           if (labelled)
             return tooth.label(s) == "root" ? "neck " + side : tooth.label(s);
-          const double y = tooth.point(s)[1];
+          const double y = height(tooth.point(s));
           if (y > highest - settings.incisal_height)
             return "incisal edge";
           return (y > margin + settings.crown_height ? "crown " : "neck ") +

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
-#include <alveolus/base/text_file.h>
 #include <alveolus/mesh/mesh_builder.h>
 #include <alveolus/mesh/mesh_source.h>
+#include <alveolus/mesh/outline_input.h>
 #include <alveolus/mesh/planar_mesher.h>
 #include <alveolus/mesh/socket_geometry.h>
 
 #include <deal.II/base/numbers.h>
-
-#include <cmath>
-#include <sstream>
 
 namespace alveolus
 {
@@ -26,16 +23,7 @@ namespace alveolus
     declare_parameters(dealii::ParameterHandler &prm) override
     {
       const dealii::Patterns::Double length(1e-6, 1e6), any(-1e6, 1e6);
-      prm.add_parameter("Tooth outline file",
-                        tooth_file,
-                        "File with the closed outline of the tooth: a point a "
-                        "line, x, y [mm] and, if wanted, the label of the "
-                        "piece to the next point. Relative to the folder of "
-                        "the parameter file.");
-      prm.add_parameter("Bone outline file",
-                        bone_file,
-                        "The same for the bone as it would be without a "
-                        "socket; it has to cross the tooth at the margins.");
+      input.declare_parameters(prm);
       prm.add_parameter("Tooth rotation",
                         rotation,
                         "Angle by which the tooth is turned about the origin "
@@ -153,21 +141,13 @@ namespace alveolus
                              " elements across the ligament",
                            "take fewer than half of `Elements across "
                            "ligament`");
-      const auto outline = [&](const std::string &file,
-                               const std::string &parameter) {
-        const std::string name = path_below(input_directory, file);
-        return read_outline(read_text_file(communicator,
-                                           name,
-                                           section + " / " + parameter),
-                            name);
-      };
       dealii::Tensor<1, 2> shift;
       shift[0]             = shift_x;
       shift[1]             = shift_y;
       const double  degree = dealii::numbers::PI / 180.;
-      const Outline tooth  = outline(tooth_file, "Tooth outline file")
+      const Outline tooth  = input.tooth(input_directory, section, communicator)
                               .placed(rotation * degree, shift);
-      const Outline bone = outline(bone_file, "Bone outline file");
+      const Outline bone = input.bone(input_directory, section, communicator);
 
       SocketSettings refined = settings;
       refined.corner_angle   = corner_angle * degree;
@@ -197,11 +177,15 @@ namespace alveolus
                          "smooth the outlines near the worst cell");
       Mesh<2> mesh = build_mesh(description, communicator);
       mesh.description += "; " + report.summary();
+      for (const Outline *const outline : {&tooth, &bone})
+        mesh.description +=
+          std::string(outline == &tooth ? "; tooth" : "; bone") +
+          " outline: " + summary_of(*outline, refined.corner_angle);
       return mesh;
     }
 
   private:
-    std::string    tooth_file, bone_file;
+    OutlineInput   input;
     double         rotation = 0., shift_x = 0., shift_y = 0.;
     double         corner_angle  = 40.; ///< [degree]
     double         least_quality = 0.4;
@@ -216,7 +200,8 @@ ALVEOLUS_REGISTER(
   alveolus::ToothInSocket,
   "tooth in socket",
   "A tooth in its socket, in 2D, from the closed outlines of tooth and bone "
-  "(`Tooth outline file`, `Bone outline file`). The socket is the offset of the tooth's "
+  "(`Tooth outline file`, `Bone outline file`), or from closed surfaces that a "
+  "plane cuts. The crown may be above or, in the upper jaw, below. The socket is the offset of the tooth's "
   "outline by `Ligament thickness` t along its normals; where it crosses the "
   "bone's outline are the margins. The root, below them, has `Elements along "
   "ligament` segments of equal arc length; the ligament between root and socket "

@@ -284,6 +284,69 @@ TEST(Outline, CircleWithoutCorners)
 
 
 
+// What people's files look like; the outline is the same.
+TEST(Outline, AcceptsWhatIsClear)
+{
+  const std::string plain =
+    "0,0,a\n1,0,a\n2,0,b\n2,1,b\n2,2,c\n1,2,c\n"
+    "0,2,d\n0,1,d\n";
+  const Outline expected = read_outline(plain, "plain");
+  EXPECT_TRUE(expected.remarks.empty());
+  const auto expect_same = [&](const std::string &text,
+                               const std::string &remark,
+                               const bool         labelled = true,
+                               const double       unit     = 1.) {
+    const Outline outline = read_outline(text, "variant", unit);
+    ASSERT_EQ(outline.points.size(), 8u) << text;
+    for (std::size_t i = 0; i < 8; ++i)
+      {
+        EXPECT_NEAR(outline.points[i].distance(expected.points[i]), 0., 1e-6);
+        EXPECT_EQ(outline.labels[i], labelled ? expected.labels[i] : "");
+      }
+    ASSERT_EQ(outline.remarks.size(), remark.empty() ? 0u : 1u) << text;
+    if (!remark.empty())
+      EXPECT_NE(outline.remarks[0].find(remark), std::string::npos)
+        << outline.remarks[0];
+  };
+  expect_same(plain + "0,0\n", "first point is repeated");
+  expect_same(plain + "1e-8,0\n", "first point is repeated");
+  expect_same("0,0,z\n" + plain, "1 repeated point");
+  expect_same(
+    "0,0,a\n1,0,z\n1,1e-9,a\n2,0,b\n2,1,b\n2,2,c\n1,2,c\n0,2,d\n"
+    "0,1,d\n",
+    "1 repeated point");
+  expect_same(
+    "\xef\xbb\xbfx;y;piece\r\n0,0;0;a\r\n1,0;0;a\r\n2;0;b\r\n2;1;b"
+    "\r\n2;2;c\r\n1;2;c\r\n0;2;d\r\n0;1;d\r\n",
+    "");
+  expect_same(
+    "0 0 7.5\n1 0 7.5\n2 0 7.5\n2 1 7.5\n2 2 7.5\n1 2 7.5\n0 2 7.5\n"
+    "0 1 7.5\n",
+    "third numbers",
+    false);
+  expect_same(
+    "0,0\n.001,0\n.002,0\n.002,.001\n.002,.002\n.001,.002\n0,.002\n"
+    "0,.001\n",
+    "",
+    false,
+    1000.);
+  // Clockwise from the corner 2, 1: the labels stay with their lines.
+  const Outline turned =
+    read_outline("2,1,b\n2,0,a\n1,0,a\n0,0,d\n0,1,d\n0,2,c\n1,2,c\n2,2,b\n",
+                 "clockwise");
+  ASSERT_EQ(turned.remarks.size(), 1u);
+  for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t k = 0; k < 8; ++k)
+      if (turned.points[i] == expected.points[k])
+        EXPECT_EQ(turned.labels[i], expected.labels[k]);
+  // Area and centroid of a rectangle far from the origin
+  const Points rectangle = {{101., 50.}, {105., 50.}, {105., 52.}, {101., 52.}};
+  EXPECT_DOUBLE_EQ(signed_area(rectangle), 8.);
+  EXPECT_NEAR(centroid_of(rectangle).distance(Point<2>(103., 51.)), 0., 1e-13);
+}
+
+
+
 TEST(Outline, BadFiles)
 {
   const auto read = [](const std::string &text) {
@@ -292,8 +355,12 @@ TEST(Outline, BadFiles)
   expect_words(read("0,0\n1,0\n1,1\n"), {"ring.csv", "3 points", "at least"});
   expect_words(read("x,y\n0,0\n1,a\n"), {"ring.csv, line 3", "coordinate"});
   expect_words(read("0,0\n1\n"), {"ring.csv, line 2", "line ends"});
-  expect_words(read("0,0\n1,0\n2,0\n2,0\n2,1\n2,2\n1,2\n0,2\n0,1\n"),
-               {"ring.csv, line 4", "same as the one before"});
+  // Depth that varies; lengths in m or in micrometres
+  expect_words(read("0,0,5\n1,0,5\n2,0,6\n"),
+               {"ring.csv, line 3", "third number", "STL"});
+  for (const double size : {0.003, 3000.})
+    expect_words(read(ring(0., 0., size, size, 20)),
+                 {"ring.csv", "mm in size", "`Outline unit`"});
   // An eight
   expect_words(read("0,0\n1,0\n2,0\n3,1\n3,2\n2,2\n1,-1\n0,-1\n"),
                {"crosses or touches itself", "line"});

@@ -61,6 +61,14 @@ namespace alveolus
     describe();
 
     /**
+     * Say what the names of the mesh stand for and draw it with them into
+     * `mesh.svg` of the output folder (simulation_names.cc).
+     * @throws RunError if the file cannot be written
+     */
+    void
+    describe_names();
+
+    /**
      * Run to the end.
      * @return true if completed; false if stopped early, with complete results
      *         and the reason on disk

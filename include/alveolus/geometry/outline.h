@@ -22,6 +22,8 @@ namespace alveolus
     /** Label of the line from point i to the next one; empty if it has none. */
     std::vector<std::string> labels;
     std::vector<std::size_t> lines; ///< of the file, for each point
+    /** What had to be mended to make it so, for the log. */
+    std::vector<std::string> remarks;
 
     /** The outline turned about the origin by @p angle [rad], then shifted. */
     Outline
@@ -29,17 +31,42 @@ namespace alveolus
   };
 
   /**
-   * Read a closed outline: one point a line, `x,y` or `x,y,label` in mm, the
-   * label being that of the line to the next point. Lines that begin with # are
-   * comments, a first line that does not begin with a number is a heading. The
-   * first point may be repeated at the end; a clockwise ring is turned round.
+   * Read a closed outline: one point a line, `x,y` or `x,y,label`, the
+   * label being that of the line to the next point. Numbers are parted by
+   * commas, blanks, tabs, or by semicolons; then commas are decimal ones. Lines
+   * that begin with # are comments, a first line that does not begin with a
+   * number is a heading. A third number that is the same in all lines (the
+   * height of the plane) is left out.
+   *
+   * Accepted and told in `remarks`: the first point repeated at the end, a
+   * point repeated at once (closer than 1e-7 of the outline's size), a
+   * clockwise ring, which is turned round.
    * @param text   content of the file
    * @param source name of the file for the messages
+   * @param unit   length of the file's unit [mm]
    * @throws InputError with file and line: no numbers, fewer than 8 points,
-   * points that coincide, lines that cross or touch, no area
+   * lines that cross or touch, no area, a third number that varies, an outline
+   * smaller than 0.5 or larger than 1000 mm
    */
   Outline
-  read_outline(const std::string &text, const std::string &source);
+  read_outline(const std::string &text,
+               const std::string &source,
+               const double       unit = 1.);
+
+  /**
+   * The same checks, mending and remarks for points from elsewhere.
+   * @param outline points [mm], lines, and labels, all of the same number
+   */
+  Outline
+  checked_outline(Outline outline);
+
+  /** Area inside a closed polygon, positive if anticlockwise [mm^2]. */
+  double
+  signed_area(const std::vector<dealii::Point<2>> &polygon);
+
+  /** Centroid of the area inside a closed polygon [mm]. */
+  dealii::Point<2>
+  centroid_of(const std::vector<dealii::Point<2>> &polygon);
 
   /**
    * Where an outline crosses itself: the first pair of lines (i from point i to

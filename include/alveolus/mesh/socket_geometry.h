@@ -51,9 +51,11 @@ namespace alveolus
    * `crest`
    * (`crest labial` or `crest lingual`). Labial is the side where, seen along
    * the anticlockwise outline of the tooth, the root begins: -x for a tooth
-   * with its crown upwards. Points: tip (middle of the incisal edge or, without
-   * one, the highest point), apex (lowest node of the root), margin root
-   * labial, margin root lingual, margin socket labial, margin socket lingual.
+   * with its crown upwards, +x for one of the upper jaw with its crown below;
+   * heights count towards the crown. Points: tip (middle of the incisal edge
+   * or, without one, the highest point), apex (lowest node of the root), margin
+   * root labial, margin root lingual, margin socket labial, margin socket
+   * lingual.
    *
    * @throws InputError: outlines that do not cross twice, a socket that leaves
    * the bone or crosses itself, plates of bone thinner than `least_bone`
