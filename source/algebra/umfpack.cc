@@ -12,6 +12,12 @@ namespace alveolus
   static_assert(sizeof(SuiteSparse_long) == sizeof(long),
                 "UMFPACK's long integers must be the compiler's");
 
+  Umfpack::Umfpack(const bool refine)
+    : refine(refine)
+  {}
+
+
+
   Umfpack::~Umfpack()
   {
     if (numeric != nullptr)
@@ -93,6 +99,10 @@ namespace alveolus
   void
   Umfpack::solve(Vector<double> &x, const Vector<double> &b) const
   {
+    std::array<double, UMFPACK_CONTROL> control;
+    umfpack_dl_defaults(control.data());
+    if (!refine)
+      control[UMFPACK_IRSTEP] = 0.;
     // Our rows are UMFPACK's columns, so the transposed system is ours.
     umfpack_dl_solve(UMFPACK_At,
                      factorised->row_begin.data(),
@@ -101,7 +111,7 @@ namespace alveolus
                      x.begin(),
                      b.begin(),
                      numeric,
-                     nullptr,
+                     control.data(),
                      nullptr);
   }
 } // namespace alveolus

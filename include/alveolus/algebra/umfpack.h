@@ -16,7 +16,12 @@ namespace alveolus
   class Umfpack
   {
   public:
-    Umfpack() = default;
+    /**
+     * @param refine improve each solution by up to two steps of iterative
+     *        refinement, each of which costs another solution. Newton's method
+     *        is such an iteration itself and does without.
+     */
+    explicit Umfpack(const bool refine = true);
     ~Umfpack();
     Umfpack(const Umfpack &) = delete;
     Umfpack &
@@ -59,6 +64,7 @@ namespace alveolus
     void
     analyse(const CsrMatrix &matrix);
 
+    const bool       refine;
     const CsrMatrix *factorised = nullptr;
     double           expected   = 0.; ///< entries of both factors
     void            *symbolic   = nullptr;
