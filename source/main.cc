@@ -18,11 +18,15 @@ main(int argc, char **argv)
   namespace po = boost::program_options;
   ProgramOptions          options;
   unsigned int            threads = 0;
+  std::string             accuracy;
   po::options_description all("alveolus [options] SCENE.prm");
   all.add_options()("help,h", "this text")("version", "print the version")(
     "set",
     po::value(&options.sets),
     "'Section/Subsection/Parameter=value', overrides the file (repeatable)")(
+    "accuracy",
+    po::value(&accuracy),
+    "accuracy level of the scene: fast, balanced or reference")(
     "output", po::value(&options.output), "output folder")(
     "resume",
     po::value(&options.resume),
@@ -59,6 +63,8 @@ main(int argc, char **argv)
       std::cerr << "alveolus: " << error.what() << "; see alveolus --help\n";
       return 2;
     }
+  if (given.count("accuracy") > 0)
+    options.sets.push_back("Accuracy=" + accuracy);
   if (given.count("help") > 0)
     {
       std::cout << all

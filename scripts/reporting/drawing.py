@@ -80,11 +80,18 @@ def chart(title, x_label, x, curves, logarithmic=False):
 # Meshes
 
 
+def is_solid(fields):
+    """Whether the cells are hexahedra: 8 or 27 points, not 4 or 9."""
+    return len(fields.cells[0]) not in (4, 9)
+
+
 def faces_of(fields):
     """Corners of what is seen, with the points that give the colour."""
-    if all(len(cell) == 4 for cell in fields.cells):
-        return [list(cell) for cell in fields.cells]
-    # Hexahedra: faces that belong to one cell only
+    if not is_solid(fields):
+        # Of degree 2 the corners come first, then the middles of the edges
+        return [[cell[k] for k in (0, 4, 1, 5, 2, 6, 3, 7)] if len(cell) == 9 else cell[:4]
+                for cell in fields.cells]
+    # Hexahedra, their corners first: faces that belong to one cell only
     sides = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
     seen = {}
     for cell in fields.cells:
@@ -99,8 +106,9 @@ def projection(three):
     """Right, up and towards the eye, from a point."""
     if not three:
         return lambda p: (p[0], p[1], 0.0)
-    eye = (0.4784, -0.7654, 0.4305)
-    right = (0.848, 0.53, 0.0)
+    # y is up: the axis of teeth. Planes of symmetry are at z = 0.
+    eye = (0.4784, 0.4305, -0.7654)
+    right = (-0.848, 0.0, -0.53)
     up = (eye[1] * right[2] - eye[2] * right[1], eye[2] * right[0] - eye[0] * right[2],
           eye[0] * right[1] - eye[1] * right[0])
     return lambda p: tuple(sum(a * b for a, b in zip(axis, p)) for axis in (right, up, eye))
@@ -119,7 +127,7 @@ def mesh(fields, name, title, bounds=None):
     if not values or not fields.cells:
         return ""
     faces = faces_of(fields)
-    three = len(fields.cells[0]) == 8
+    three = is_solid(fields)
     project = projection(three)
     places = [project(p) for p in fields.points]
     used = {v for face in faces for v in face}
@@ -145,7 +153,8 @@ def mesh(fields, name, title, bounds=None):
     for i in order:
         points = ["%.1f %.1f" % (10 + (places[v][0] - x0) * scale, 30 + (y1 - places[v][1]) * scale)
                   for v in faces[i]]
-        if colour(means[i]) != last:
+        # In space each by itself: what overlaps in one path may cancel
+        if three or colour(means[i]) != last:
             last = colour(means[i])
             paths.append((last, []))
         paths[-1][1].append("M" + "L".join(points) + "Z")
@@ -158,6 +167,6 @@ def mesh(fields, name, title, bounds=None):
     if name != "region":
         for k in range(20):
             out.append(f'<rect x="{10 + 6 * k}" y="{height - 26:.0f}" width="6.5" height="10" fill="{ramp(k / 19)}"/>')
-        out.append(f'<text x="10" y="{height - 4:.0f}">{low:.4g}</text>'
-                   f'<text x="130" y="{height - 4:.0f}" class="end">{high:.4g}</text>')
+        out.append(f'<text x="10" y="{height - 3:.0f}">{low:.3g}</text>'
+                   f'<text x="136" y="{height - 17:.0f}">{high:.3g}</text>')
     return "".join(out) + "</svg>"

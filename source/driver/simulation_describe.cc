@@ -67,6 +67,12 @@ namespace alveolus
             std::to_string(scene.degree) + ", " +
             std::to_string(model->state->configuration.dof_handler.n_dofs()) +
             " unknowns");
+    if (scene.accuracy().used())
+      {
+        log.say(label("accuracy") + scene.accuracy().chosen());
+        for (const auto &setting : scene.accuracy().settings())
+          log.say(label("") + setting);
+      }
     for (unsigned int r = 0; r < model->regions.size(); ++r)
       {
         const auto &definition = scene.regions[r];

@@ -216,9 +216,11 @@ namespace alveolus
       Utilities::MPI::sum(model->state->history.memory_consumption(),
                           communicator);
     nlohmann::ordered_json summary;
-    summary["completed"]         = completed;
-    summary["reason"]            = reason;
-    summary["title"]             = scene.title;
+    summary["completed"] = completed;
+    summary["reason"]    = reason;
+    summary["title"]     = scene.title;
+    if (scene.accuracy().used())
+      summary["accuracy"] = scene.accuracy().chosen();
     summary["time"]              = model->state->time;
     summary["steps"]             = totals.steps;
     summary["rejected attempts"] = totals.rejected;

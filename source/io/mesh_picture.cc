@@ -98,8 +98,9 @@ namespace alveolus
         return Point<3>(p[0], p[1], 0.);
       else
         {
-          const Tensor<1, 3> eye = Point<3>(1., -1.6, 0.9) / 2.0904544960366874;
-          Tensor<1, 3>       right = Point<3>(1.6, 1., 0.);
+          // y is up: the axis of teeth. Planes of symmetry are at z = 0.
+          const Tensor<1, 3> eye   = Point<3>(1., 0.9, -1.6) / std::sqrt(4.37);
+          Tensor<1, 3>       right = Point<3>(-1.6, 0., -1.);
           right /= right.norm();
           const Tensor<1, 3> up = cross_product_3d(eye, right);
           return Point<3>(right * p, up * p, eye * p);

@@ -45,20 +45,6 @@ namespace alveolus
       return !name.empty();
     }
 
-    /**
-     * The value, or for file names (by their parameter's name) the path from
-     * here: in a file they are relative to the folder of that file.
-     */
-    std::string
-    resolved(const ParameterText::Entry &entry)
-    {
-      if (!ParameterText::is_path(entry.name) || entry.value.empty() ||
-          entry.value.front() == '/' || entry.directory.empty() ||
-          entry.directory == ".")
-        return entry.value;
-      return entry.directory + "/" + entry.value;
-    }
-
     bool
     starts_with_word(const std::string &line, const std::string &word)
     {
@@ -77,6 +63,17 @@ namespace alveolus
     return slash == std::string::npos ? "."
            : slash == 0               ? "/"
                                       : file_name.substr(0, slash);
+  }
+
+
+
+  std::string
+  ParameterText::Entry::resolved_value() const
+  {
+    if (!ParameterText::is_path(name) || value.empty() ||
+        value.front() == '/' || directory.empty() || directory == ".")
+      return value;
+    return directory + "/" + value;
   }
 
 
@@ -378,7 +375,7 @@ namespace alveolus
         // Only set() tells of undeclared entries in a release build.
         try
           {
-            prm.set(entry.name, resolved(entry));
+            prm.set(entry.name, entry.resolved_value());
           }
         catch (const ParameterHandler::ExcEntryUndeclared &)
           {

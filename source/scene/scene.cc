@@ -9,8 +9,10 @@ namespace alveolus
   using namespace dealii;
 
   template <int dim>
-  Scene<dim>::Scene(const ParameterText &text)
-    : text(text)
+  Scene<dim>::Scene(const ParameterText &statements)
+    : all_statements(statements)
+    , accuracy_levels(statements)
+    , text(accuracy_levels.statements())
   {
     declare();
     text.apply(prm);
@@ -143,6 +145,7 @@ namespace alveolus
                       "2",
                       Patterns::Integer(2, 3),
                       "Dimension of the scene; 2 is plane strain.");
+    accuracy_levels.declare(prm);
 
     prm.enter_subsection("Mesh");
     prm.add_parameter("Degree",

@@ -85,6 +85,7 @@ namespace alveolus
     {
       return path == "Title" || path == "Output / Directory" ||
              path == "Mesh / Largest number of cells" ||
+             path.compare(0, 16, "Accuracy levels ") == 0 ||
              path.compare(0, 11, "Checkpoint ") == 0;
     }
 

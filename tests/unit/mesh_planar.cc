@@ -6,6 +6,7 @@
 #include <alveolus/geometry/grading.h>
 #include <alveolus/mesh/mesh_builder.h>
 #include <alveolus/mesh/mesh_source.h>
+#include <alveolus/mesh/outline_input.h>
 #include <alveolus/mesh/planar_mesher.h>
 #include <alveolus/mesh/socket_geometry.h>
 
@@ -801,4 +802,81 @@ TEST(Socket, Source)
       make({{"Elements along ligament", "60"}, {"Least quality", "0.99"}});
     }),
     {"Least quality", "smallest scaled Jacobian", "bone:"});
+}
+
+
+
+// Prisms of the outlines, in cm, cut across: the same body as from the points.
+TEST(Socket, FromSurfaces)
+{
+  if (!can_cut_surfaces())
+    GTEST_SKIP() << "built without CGAL";
+  for (const std::string name : {"tooth", "bone"})
+    {
+      const Outline outline =
+        read_outline(shipped("incisor-" + name + ".csv"), name);
+      const Point<2>     centre = centroid_of(outline.points);
+      std::ostringstream points, stl;
+      points.precision(10);
+      stl.precision(10);
+      const auto facet = [&stl](const std::array<Point<3>, 3> &corners) {
+        stl << "facet normal 0 0 0\nouter loop\n";
+        for (const Point<3> &p : corners)
+          stl << "vertex " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+        stl << "endloop\nendfacet\n";
+      };
+      const auto place = [](const double x, const Point<2> &p) {
+        return Point<3>(x, 0.1 * p[0], 0.1 * p[1]);
+      };
+      stl << "solid " << name << '\n';
+      const std::size_t n = outline.points.size();
+      for (std::size_t i = 0; i < n; ++i)
+        {
+          const Point<2> &a = outline.points[i],
+                         &b = outline.points[(i + 1) % n];
+          points << a[0] << ',' << a[1] << '\n';
+          facet({{place(-1, a), place(-1, b), place(1, b)}});
+          facet({{place(-1, a), place(1, b), place(1, a)}});
+          facet({{place(-1, b), place(-1, a), place(-1, centre)}});
+          facet({{place(1, a), place(1, b), place(1, centre)}});
+        }
+      stl << "endsolid\n";
+      write(name + "-plain.csv", points.str());
+      write(name + ".STL", stl.str());
+    }
+  std::map<std::string, double> areas[2];
+  for (const bool surface : {false, true})
+    {
+      const auto source =
+        Registry<MeshSource<2>>::create("tooth in socket", "Mesh / Type");
+      ParameterHandler prm;
+      source->declare_parameters(prm);
+      for (const std::string name : {"tooth", "bone"})
+        prm.set((name == "tooth" ? "Tooth" : "Bone") +
+                  std::string(" outline file"),
+                name + (surface ? ".STL" : "-plain.csv"));
+      prm.set("Elements along ligament", "60");
+      prm.set("Elements across ligament", "2");
+      if (surface)
+        {
+          prm.set("Outline unit", "cm");
+          prm.set("Section origin", "0.123, 0, 0");
+        }
+      const Mesh<2> mesh = source->create(MPI_COMM_WORLD, folder(), folder());
+      for (const auto &region : mesh.names.regions)
+        {
+          double area = 0.;
+          for (const auto &cell : mesh.triangulation->active_cell_iterators())
+            if (cell->is_locally_owned() &&
+                region.second.count(cell->material_id()) > 0)
+              area += cell->measure();
+          areas[surface][region.first] =
+            Utilities::MPI::sum(area, MPI_COMM_WORLD);
+        }
+    }
+  // The loop has points on the diagonals of the prism's sides, too: the
+  // splines through them differ a little.
+  for (const auto &region : areas[0])
+    EXPECT_NEAR(areas[1][region.first] / region.second, 1., 2e-3)
+      << region.first;
 }

@@ -12,7 +12,7 @@ namespace alveolus
   /**
    * A mesh as a picture (SVG): regions in colours, boundaries as strong lines,
    * curves inside dashed, points, all with their names; in 3D the boundary
-   * seen from the direction (1, -1.6, 0.9), its cells without edges where there
+   * seen from the direction (1, 0.9, -1.6), its cells without edges where there
    * are many (collective; the text is empty except on process 0).
    * @param title line above the picture
    */

@@ -29,6 +29,11 @@ namespace alveolus
       std::string              value;
       std::string              origin;    ///< "file:line" or "--set"
       std::string              directory; ///< of that file, "" for "--set"
+
+      /** The value, or for paths (is_path()) the path from here: in a file
+       * they are relative to the folder of that file. */
+      std::string
+      resolved_value() const;
     };
 
     /**

@@ -9,6 +9,7 @@
 #include <alveolus/remeshing/remesh_plan.h>
 #include <alveolus/remeshing/remesher.h>
 #include <alveolus/rezoning/rezoner.h>
+#include <alveolus/scene/accuracy.h>
 #include <alveolus/scene/parameter_text.h>
 #include <alveolus/solver/staggered_step.h>
 #include <alveolus/solver/step_control.h>
@@ -35,6 +36,9 @@ namespace alveolus
   public:
     /** @throws InputError with every problem of the parameter file */
     explicit Scene(const ParameterText &text);
+    Scene(const Scene &) = delete; // `text` refers to a member
+    Scene &
+    operator=(const Scene &) = delete;
 
     struct Region
     {
@@ -105,14 +109,21 @@ namespace alveolus
     std::shared_ptr<Scene<dim>>
     another() const
     {
-      return std::make_shared<Scene<dim>>(text);
+      return std::make_shared<Scene<dim>>(all_statements);
     }
 
-    /** The statements the scene was made of. */
+    /** The statements the scene was made of, with all accuracy levels. */
     const ParameterText &
     parameter_text() const
     {
-      return text;
+      return all_statements;
+    }
+
+    /** The accuracy levels and what was chosen. */
+    const AccuracyLevels &
+    accuracy() const
+    {
+      return accuracy_levels;
     }
 
     /** The resolved parameters, with defaults, in the input format. */
@@ -127,7 +138,9 @@ namespace alveolus
     std::vector<Named<Interface>>
     make_collection(const std::string &section);
 
-    const ParameterText             &text;
+    const ParameterText             &all_statements;
+    AccuracyLevels                   accuracy_levels;
+    const ParameterText             &text; ///< of the chosen level
     dealii::ParameterHandler         prm;
     std::vector<Named<InterfaceLaw>> interface_law_list;
   };
