@@ -53,11 +53,13 @@ def curves(scratch, number, rows, knobs, quantity, limit, column):
 
 def draw(study, rows, references, folder):
     """STUDY-KIND.png for each kind of diagram of the study: a panel for each
-    quantity against seconds, and the first one against memory."""
+    quantity against seconds, and the first one against memory if that varies."""
     panels = [(q, references[q.name], 1) for q in study.quantities if q.name in references]
     if not panels:
         return
-    panels.append((*panels[0][:2], 3))
+    memory = [float(row["peak memory [MB]"]) for row in rows if row["peak memory [MB]"]]
+    if max(memory) - min(memory) > 10:
+        panels.append((*panels[0][:2], 3))
     lines = (len(panels) + 1) // 2
     for kind, knobs in study.diagrams.items():
         odd = len(panels) % 2 > 0 # then the legend takes the last place
