@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <numeric>
@@ -64,7 +65,10 @@ namespace
     const auto          scene = std::make_shared<Scene<dim>>(text);
     TimerOutput timer(std::cout, TimerOutput::never, TimerOutput::cpu_times);
     Model<dim>  model(scene,
-                     scene->mesh_source->create(MPI_COMM_WORLD, ".", "."),
+                     scene->mesh_source->create(
+                       MPI_COMM_WORLD,
+                       ".",
+                       std::filesystem::temp_directory_path().string()),
                      timer);
     State<dim> &state = *model.state;
 
