@@ -2,9 +2,7 @@
 #include <alveolus/algebra/umfpack.h>
 #include <alveolus/base/errors.h>
 
-#include <algorithm>
 #include <array>
-#include <numeric>
 #include <umfpack.h>
 
 namespace alveolus
@@ -13,6 +11,12 @@ namespace alveolus
 
   static_assert(sizeof(SuiteSparse_long) == sizeof(long),
                 "UMFPACK's long integers must be the compiler's");
+
+  Umfpack::Umfpack(const bool refine)
+    : refine(refine)
+  {}
+
+
 
   Umfpack::~Umfpack()
   {
@@ -25,46 +29,25 @@ namespace alveolus
 
 
   void
-  Umfpack::analyse(const SparseMatrix<double> &matrix)
+  Umfpack::analyse(const CsrMatrix &matrix)
   {
-    pattern              = &matrix.get_sparsity_pattern();
-    const std::size_t n  = matrix.m();
-    const std::size_t nz = matrix.n_nonzero_elements();
-    row_begin.assign(1, 0);
-    columns.clear();
-    source.clear();
-    columns.reserve(nz);
-    source.reserve(nz);
-    values.resize(nz);
-
-    // deal.II stores the diagonal first in each row, UMFPACK wants ascending
-    // columns; remember where each value comes from.
-    std::size_t                               position = 0;
-    std::vector<std::pair<long, std::size_t>> row;
-    for (std::size_t i = 0; i < n; ++i)
-      {
-        row.clear();
-        for (auto entry = matrix.begin(i); entry != matrix.end(i); ++entry)
-          row.emplace_back(static_cast<long>(entry->column()), position++);
-        std::sort(row.begin(), row.end());
-        for (const auto &entry : row)
-          {
-            columns.push_back(entry.first);
-            source.push_back(entry.second);
-          }
-        row_begin.push_back(static_cast<long>(columns.size()));
-      }
-
+    factorised = &matrix;
     if (symbolic != nullptr)
       umfpack_dl_free_symbolic(&symbolic);
-    const int status = umfpack_dl_symbolic(static_cast<long>(n),
-                                           static_cast<long>(n),
-                                           row_begin.data(),
-                                           columns.data(),
+    std::array<double, UMFPACK_INFO> info{};
+
+    const long n      = static_cast<long>(matrix.size());
+    const int  status = umfpack_dl_symbolic(n,
+                                           n,
+                                           matrix.row_begin.data(),
+                                           matrix.columns.data(),
                                            nullptr,
                                            &symbolic,
                                            nullptr,
-                                           nullptr);
+                                           info.data());
+    expected = info[UMFPACK_STRATEGY_USED] == UMFPACK_STRATEGY_SYMMETRIC
+                 ? info[UMFPACK_SYMMETRIC_LUNZ]
+                 : info[UMFPACK_LNZ_ESTIMATE] + info[UMFPACK_UNZ_ESTIMATE];
     if (status != UMFPACK_OK)
       throw RunError("UMFPACK",
                      "symbolic analysis failed with status " +
@@ -74,26 +57,29 @@ namespace alveolus
 
 
 
-  void
-  Umfpack::factorize(const SparseMatrix<double> &matrix)
+  std::size_t
+  Umfpack::expected_bytes(const CsrMatrix &matrix)
   {
-    if (pattern != &matrix.get_sparsity_pattern())
+    if (factorised != &matrix)
       analyse(matrix);
-    std::vector<double> unsorted(values.size());
-    std::size_t         position = 0;
-    for (std::size_t i = 0; i < matrix.m(); ++i)
-      for (auto entry = matrix.begin(i); entry != matrix.end(i); ++entry)
-        unsorted[position++] = entry->value();
-    for (std::size_t k = 0; k < values.size(); ++k)
-      values[k] = unsorted[source[k]];
+    // A value each; the row and column numbers are compressed
+    return static_cast<std::size_t>(expected * sizeof(double));
+  }
 
+
+
+  void
+  Umfpack::factorize(const CsrMatrix &matrix)
+  {
+    if (factorised != &matrix)
+      analyse(matrix);
     if (numeric != nullptr)
       umfpack_dl_free_numeric(&numeric);
     std::array<double, UMFPACK_INFO> info{};
 
-    const int status            = umfpack_dl_numeric(row_begin.data(),
-                                          columns.data(),
-                                          values.data(),
+    const int status            = umfpack_dl_numeric(matrix.row_begin.data(),
+                                          matrix.columns.data(),
+                                          matrix.values.data(),
                                           symbolic,
                                           &numeric,
                                           nullptr,
@@ -113,15 +99,19 @@ namespace alveolus
   void
   Umfpack::solve(Vector<double> &x, const Vector<double> &b) const
   {
+    std::array<double, UMFPACK_CONTROL> control;
+    umfpack_dl_defaults(control.data());
+    if (!refine)
+      control[UMFPACK_IRSTEP] = 0.;
     // Our rows are UMFPACK's columns, so the transposed system is ours.
     umfpack_dl_solve(UMFPACK_At,
-                     row_begin.data(),
-                     columns.data(),
-                     values.data(),
+                     factorised->row_begin.data(),
+                     factorised->columns.data(),
+                     factorised->values.data(),
                      x.begin(),
                      b.begin(),
                      numeric,
-                     nullptr,
+                     control.data(),
                      nullptr);
   }
 } // namespace alveolus

@@ -1,11 +1,30 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/assembly/cell_kernel.h>
 
+#include <deal.II/base/geometry_info.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
 #include <cmath>
 
 namespace alveolus
 {
   using namespace dealii;
+
+  namespace
+  {
+    bool
+    is_finite(const SymmetricTensor<2, 3> &stress)
+    {
+      // The sum of squares is not finite if one of them is not
+      double sum = 0.;
+      for (unsigned int i = 0; i < 6; ++i)
+        sum += stress.access_raw_entry(i) * stress.access_raw_entry(i);
+      return std::isfinite(sum);
+    }
+  } // namespace
+
+
 
   template <int dim>
   CellKernel<dim>::CellKernel(const Configuration<dim> &configuration,
@@ -14,14 +33,16 @@ namespace alveolus
     , geometry(geometry)
     , points(geometry.n_points)
   {
-    for (unsigned int i = 0; i < configuration.fe.n_dofs_per_cell(); ++i)
-      {
-        component.push_back(
-          configuration.fe.system_to_component_index(i).first);
-        node.push_back(configuration.fe.system_to_component_index(i).second);
-      }
+    for (unsigned int a = 0; a < geometry.n_nodes; ++a)
+      for (unsigned int i = 0; i < dim; ++i)
+        dof.push_back(configuration.fe.component_to_system_index(i, a));
     for (auto &point : points)
-      point.gradients.resize(geometry.n_nodes);
+      {
+        point.gradients.resize(geometry.n_nodes);
+        for (unsigned int d = 0; d < 3; ++d)
+          point.f[d][d] = 1.;
+        point.response.plane_strain = (dim == 2);
+      }
 
     const FE_DGP<dim>  pressure_fe(configuration.degree - 1);
     const unsigned int n = pressure_fe.n_dofs_per_cell();
@@ -33,8 +54,11 @@ namespace alveolus
     mass_inverse.reinit(n, n);
     coefficients.resize(n);
     coefficients_pressure.resize(n);
-    stress_variation.resize(component.size() * points.size());
-    theta_variation.resize(component.size() * points.size());
+    tangent.resize(dof.size() * dof.size());
+    gradients_by_component.resize(dof.size());
+    for (auto *rows :
+         {&volume_rows, &pressure_rows, &deviator_rows, &theta_rows, &dp_rows})
+      rows->resize(n * dof.size());
   }
 
 
@@ -112,24 +136,22 @@ namespace alveolus
       {
         Point                &point = points[q];
         const Tensor<1, dim> *G     = geometry.gradients(cell, q);
-        point.f                     = 0;
-        for (unsigned int d = 0; d < 3; ++d)
-          point.f[d][d] = 1.;
-        for (unsigned int i = 0; i < component.size(); ++i)
-          for (unsigned int d = 0; d < dim; ++d)
-            point.f[component[i]][d] += increment[i] * G[node[i]][d];
-        point.det = determinant(point.f);
+        Tensor<2, dim>        f;
+        for (unsigned int d = 0; d < dim; ++d)
+          f[d][d] = 1.;
+        for (unsigned int a = 0; a < geometry.n_nodes; ++a)
+          for (unsigned int i = 0; i < dim; ++i)
+            f[i] += increment[dof[a * dim + i]] * G[a];
+        point.det = determinant(f);
         if (!(point.det > 0.))
           return Status::inverted;
 
-        const Tensor<2, 3> f_inverse = invert(point.f);
+        const Tensor<2, dim> f_inverse = invert(f);
         for (unsigned int a = 0; a < geometry.n_nodes; ++a)
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              point.gradients[a][d] = 0.;
-              for (unsigned int e = 0; e < dim; ++e)
-                point.gradients[a][d] += G[a][e] * f_inverse[e][d];
-            }
+          point.gradients[a] = G[a] * f_inverse;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            point.f[i][j] = f[i][j];
       }
 
     if (mean_dilatation)
@@ -162,7 +184,7 @@ namespace alveolus
                                   history.trial_record(cell, q),
                                   need_tangent,
                                   point.response);
-        if (!std::isfinite(point.response.stress.norm()))
+        if (!is_finite(point.response.stress))
           return Status::not_finite;
         energy += point.response.energy * point.weight;
         energy_moved += point.response.energy * moved_weight(q);
@@ -203,21 +225,24 @@ namespace alveolus
     forces = 0.;
     for (unsigned int q = 0; q < points.size(); ++q)
       {
-        Point                &point  = points[q];
-        SymmetricTensor<2, 3> stress = point.response.stress * point.weight;
-        if (mean_dilatation)
-          stress = deviator(stress) + point.pressure * point.det *
-                                        geometry_weight[q] *
-                                        unit_symmetric_tensor<3>();
-        for (unsigned int i = 0; i < component.size(); ++i)
-          for (unsigned int d = 0; d < dim; ++d)
-            forces[i] += stress[component[i]][d] * point.gradients[node[i]][d];
+        const Point   &point = points[q];
+        Tensor<2, dim> stress;
+        const double   pressure =
+          mean_dilatation ? point.pressure * point.det * geometry_weight[q] -
+                              point.weight * trace(point.response.stress) / 3.
+                            : 0.;
+        for (unsigned int i = 0; i < dim; ++i)
+          {
+            for (unsigned int j = 0; j < dim; ++j)
+              stress[i][j] = point.weight * point.response.stress[i][j];
+            stress[i][i] += pressure;
+          }
+        for (unsigned int a = 0; a < geometry.n_nodes; ++a)
+          for (unsigned int i = 0; i < dim; ++i)
+            forces[dof[a * dim + i]] += stress[i] * point.gradients[a];
       }
     if (matrix != nullptr)
-      {
-        *matrix = 0.;
-        add_tangent(*matrix);
-      }
+      fill_tangent(*matrix);
     return Status::good;
   }
 
@@ -225,96 +250,218 @@ namespace alveolus
 
   template <int dim>
   void
-  CellKernel<dim>::add_tangent(FullMatrix<double> &matrix)
+  CellKernel<dim>::fill_tangent(FullMatrix<double> &matrix)
   {
-    const unsigned int n_dofs   = component.size();
-    const unsigned int n_points = points.size();
-
-    // Variation of theta for every dof: P(det f div v).
+    // With the number of nodes known, the compiler unrolls the loops over them.
+    constexpr unsigned int linear    = GeometryInfo<dim>::vertices_per_cell;
+    constexpr unsigned int quadratic = Utilities::pow(3, dim);
+    if (geometry.n_nodes == linear)
+      add_point_tangents<linear>();
+    else if (geometry.n_nodes == quadratic)
+      add_point_tangents<quadratic>();
+    else
+      add_point_tangents<0>();
     if (mean_dilatation)
-      for (unsigned int b = 0; b < n_dofs; ++b)
-        {
-          project(
-            [&](const unsigned int q) {
-              const Point &point = points[q];
-              return point.det * point.gradients[node[b]][component[b]] *
-                     geometry_weight[q];
-            },
-            coefficients);
-          for (unsigned int q = 0; q < n_points; ++q)
-            theta_variation[b * n_points + q] = projected(coefficients, q);
-        }
+      add_dilatation_tangent();
 
-    // Variation of tau_bar for every dof.
-    for (unsigned int q = 0; q < n_points; ++q)
-      {
-        const Point          &point = points[q];
-        const auto           &T     = point.response.tangent;
-        SymmetricTensor<2, 3> volumetric;
-        if (mean_dilatation)
-          volumetric = T[0][0] + T[1][1] + T[2][2];
-        for (unsigned int b = 0; b < n_dofs; ++b)
+    const unsigned int n_nodes = geometry.n_nodes;
+    for (unsigned int b = 0; b < n_nodes; ++b)
+      for (unsigned int k = 0; k < dim; ++k)
+        for (unsigned int i = 0; i < dim; ++i)
           {
-            const unsigned int     k     = component[b];
-            const Tensor<1, dim>  &g     = point.gradients[node[b]];
-            SymmetricTensor<2, 3> &d_tau = stress_variation[b * n_points + q];
-            d_tau                        = g[0] * T[k][0];
-            for (unsigned int l = 1; l < dim; ++l)
-              d_tau += g[l] * T[k][l];
-            if (mean_dilatation)
-              d_tau +=
-                (theta_variation[b * n_points + q] / point.theta - g[k]) / 3. *
-                volumetric;
+            const double *entries =
+              tangent.data() + ((b * dim + k) * dim + i) * n_nodes;
+            const unsigned int column = dof[b * dim + k];
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              matrix(dof[a * dim + i], column) = entries[a];
+          }
+  }
+
+
+
+  /**
+   * For the velocity gradient e_k (x) grad N_b the change of the force on node
+   * a is a_ijkl (grad N_a)_j (grad N_b)_l with a_ijkl = (change of the
+   * stress)_ijkl - sigma_il delta_jk. With mean dilatation only the part at
+   * constant theta and p is meant here.
+   */
+  template <int dim>
+  template <unsigned int n_static>
+  void
+  CellKernel<dim>::add_point_tangents()
+  {
+    const unsigned int n_nodes = n_static > 0 ? n_static : geometry.n_nodes;
+    std::fill(tangent.begin(), tangent.end(), 0.);
+    for (unsigned int q = 0; q < points.size(); ++q)
+      {
+        Point       &point = points[q];
+        const auto  &T     = point.response.tangent;
+        const double w     = point.weight;
+
+        Tensor<2, dim> stress;
+        const double   mean =
+          mean_dilatation ? trace(point.response.stress) / 3. : 0.;
+        const double pressure =
+          mean_dilatation
+            ? point.pressure * geometry_weight[q] * point.det - w * mean
+            : 0.;
+        for (unsigned int i = 0; i < dim; ++i)
+          {
+            for (unsigned int j = 0; j < dim; ++j)
+              stress[i][j] = w * point.response.stress[i][j];
+            stress[i][i] += pressure;
+          }
+
+        SymmetricTensor<2, 3> volumetric; // of a change of theta
+        if (mean_dilatation)
+          {
+            volumetric           = (T[0][0] + T[1][1] + T[2][2]) / 3.;
+            const double trace_v = trace(volumetric);
+            const double factor  = w / point.theta;
+            for (unsigned int i = 0; i < dim; ++i)
+              {
+                for (unsigned int j = 0; j < dim; ++j)
+                  point.stress_by_theta[i][j] = factor * volumetric[i][j];
+                point.stress_by_theta[i][i] -= factor * trace_v / 3.;
+              }
+            point.pressure_by_theta = factor / (3. * point.theta) *
+                                      (trace_v - trace(point.response.stress));
+          }
+
+        const double p_volume =
+          mean_dilatation ? point.pressure * geometry_weight[q] * point.det
+                          : 0.;
+        for (unsigned int k = 0; k < dim; ++k)
+          for (unsigned int l = 0; l < dim; ++l)
+            {
+              SymmetricTensor<2, 3> change = T[k][l];
+              double                sphere = 0.;
+              if (mean_dilatation)
+                {
+                  if (k == l)
+                    change -= volumetric;
+                  const double t                   = trace(change);
+                  point.pressure_by_gradient[k][l] = w * t / (3. * point.theta);
+                  sphere = -w * t / 3. + (k == l ? p_volume : 0.);
+                }
+              for (unsigned int i = 0; i < dim; ++i)
+                {
+                  for (unsigned int j = 0; j < dim; ++j)
+                    moduli[k][i][j][l] = w * change[i][j];
+                  moduli[k][i][i][l] += sphere;
+                  moduli[k][i][k][l] -= stress[i][l];
+                }
+            }
+
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int d = 0; d < dim; ++d)
+            gradients_by_component[d * n_nodes + a] = point.gradients[a][d];
+
+        const double *G   = gradients_by_component.data();
+        double       *out = tangent.data();
+        for (unsigned int b = 0; b < n_nodes; ++b)
+          {
+            const Tensor<1, dim> &g = point.gradients[b];
+            for (unsigned int k = 0; k < dim; ++k)
+              for (unsigned int i = 0; i < dim; ++i)
+                {
+                  double row[dim];
+                  for (unsigned int j = 0; j < dim; ++j)
+                    {
+                      row[j] = moduli[k][i][j][0] * g[0];
+                      for (unsigned int l = 1; l < dim; ++l)
+                        row[j] += moduli[k][i][j][l] * g[l];
+                    }
+                  for (unsigned int a = 0; a < n_nodes; ++a)
+                    {
+                      double sum = row[0] * G[a];
+                      for (unsigned int j = 1; j < dim; ++j)
+                        sum += row[j] * G[j * n_nodes + a];
+                      out[a] += sum;
+                    }
+                  out += n_nodes;
+                }
+          }
+      }
+  }
+
+
+
+  /**
+   * theta and p of a cell depend on all its dofs, through one number for each
+   * function psi_m of FE_DGP: with C_mb = int psi_m det f div v_b, that is,
+   * d theta_b = psi_m (M^-1 C)_mb, the tangent gets C^T M^-1 R for dp and
+   * E^T M^-1 C for the change of the deviator by theta.
+   */
+  template <int dim>
+  void
+  CellKernel<dim>::add_dilatation_tangent()
+  {
+    const unsigned int n       = coefficients.size();
+    const unsigned int n_nodes = geometry.n_nodes;
+    const unsigned int n_dofs  = n_nodes * dim;
+    for (unsigned int m = 0; m < n; ++m)
+      {
+        double *C = volume_rows.data() + m * n_dofs;
+        double *R = pressure_rows.data() + m * n_dofs;
+        double *E = deviator_rows.data() + m * n_dofs;
+        std::fill(C, C + n_dofs, 0.);
+        std::fill(R, R + n_dofs, 0.);
+        std::fill(E, E + n_dofs, 0.);
+        for (unsigned int q = 0; q < points.size(); ++q)
+          {
+            const Point         &point  = points[q];
+            const double         psi    = pressure_shapes[m][q];
+            const double         volume = psi * geometry_weight[q] * point.det;
+            const Tensor<2, dim> by_gradient = psi * point.pressure_by_gradient;
+            const Tensor<2, dim> by_theta    = psi * point.stress_by_theta;
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              for (unsigned int i = 0; i < dim; ++i)
+                {
+                  const Tensor<1, dim> &g = point.gradients[a];
+                  C[a * dim + i] += volume * g[i];
+                  R[a * dim + i] += by_gradient[i] * g;
+                  E[a * dim + i] += by_theta[i] * g;
+                }
           }
       }
 
-    for (unsigned int b = 0; b < n_dofs; ++b)
-      {
-        const unsigned int k = component[b];
-        if (mean_dilatation)
-          project(
-            [&](const unsigned int q) {
-              const Point &point = points[q];
-              return point.weight / (3. * point.theta) *
-                     (trace(stress_variation[b * n_points + q]) -
-                      trace(point.response.stress) *
-                        theta_variation[b * n_points + q] / point.theta);
-            },
-            coefficients);
-        for (unsigned int q = 0; q < n_points; ++q)
+    const auto solve_mass = [&](const std::vector<double> &rows,
+                                std::vector<double>       &result) {
+      for (unsigned int m = 0; m < n; ++m)
+        for (unsigned int b = 0; b < n_dofs; ++b)
           {
-            const Point          &point = points[q];
-            const Tensor<1, dim> &g     = point.gradients[node[b]];
-            SymmetricTensor<2, 3> d_stress =
-              stress_variation[b * n_points + q] * point.weight;
-            SymmetricTensor<2, 3> stress = point.response.stress * point.weight;
-            if (mean_dilatation)
-              {
-                const double dp = projected(coefficients, q);
-                const double w  = geometry_weight[q] * point.det;
-                d_stress = deviator(d_stress) + (dp + point.pressure * g[k]) *
-                                                  w *
-                                                  unit_symmetric_tensor<3>();
-                stress = deviator(stress) +
-                         point.pressure * w * unit_symmetric_tensor<3>();
-              }
-            double stress_g[dim];
-            for (unsigned int i = 0; i < dim; ++i)
-              {
-                stress_g[i] = 0.;
-                for (unsigned int l = 0; l < dim; ++l)
-                  stress_g[i] += stress[i][l] * g[l];
-              }
-            for (unsigned int a = 0; a < n_dofs; ++a)
-              {
-                const unsigned int    i   = component[a];
-                const Tensor<1, dim> &g_a = point.gradients[node[a]];
-                double                sum = -stress_g[i] * g_a[k];
-                for (unsigned int j = 0; j < dim; ++j)
-                  sum += d_stress[i][j] * g_a[j];
-                matrix(a, b) += sum;
-              }
+            double sum = 0.;
+            for (unsigned int k = 0; k < n; ++k)
+              sum += mass_inverse(m, k) * rows[k * n_dofs + b];
+            result[m * n_dofs + b] = sum;
           }
+    };
+    solve_mass(volume_rows, theta_rows);
+    for (unsigned int m = 0; m < n; ++m)
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          double coupling = 0.;
+          for (unsigned int q = 0; q < points.size(); ++q)
+            coupling += pressure_shapes[m][q] * pressure_shapes[k][q] *
+                        points[q].pressure_by_theta;
+          for (unsigned int b = 0; b < n_dofs; ++b)
+            pressure_rows[m * n_dofs + b] +=
+              coupling * theta_rows[k * n_dofs + b];
+        }
+    solve_mass(pressure_rows, dp_rows);
+
+    for (unsigned int m = 0; m < n; ++m)
+      {
+        const double *C     = volume_rows.data() + m * n_dofs;
+        const double *E     = deviator_rows.data() + m * n_dofs;
+        const double *dp    = dp_rows.data() + m * n_dofs;
+        const double *theta = theta_rows.data() + m * n_dofs;
+        double       *out   = tangent.data();
+        for (unsigned int b = 0; b < n_dofs; ++b)
+          for (unsigned int i = 0; i < dim; ++i, out += n_nodes)
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              out[a] += C[a * dim + i] * dp[b] + E[a * dim + i] * theta[b];
       }
   }
 

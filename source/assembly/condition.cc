@@ -37,6 +37,16 @@ namespace alveolus
     if (system == nullptr)
       return;
     system->add(matrix, dofs);
+    add_lifted(matrix, dofs);
+  }
+
+
+
+  void
+  AssemblyTarget::add_lifted(
+    const FullMatrix<double>                   &matrix,
+    const std::vector<types::global_dof_index> &dofs) const
+  {
     if (lift == nullptr)
       return;
     for (unsigned int j = 0; j < dofs.size(); ++j)

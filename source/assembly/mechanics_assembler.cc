@@ -2,7 +2,6 @@
 #include <alveolus/assembly/mechanics_assembler.h>
 
 #include <deal.II/base/work_stream.h>
-#include <deal.II/grid/filtered_iterator.h>
 
 #include <sstream>
 
@@ -46,9 +45,9 @@ namespace alveolus
     FullMatrix<double>                   matrix;
     Vector<double>                       forces;
     std::vector<types::global_dof_index> dofs;
-    double      energy = 0., energy_moved = 0., dissipation = 0.;
-    std::string failure; ///< of the material
-    Point<dim>  center;
+    double       energy = 0., energy_moved = 0., dissipation = 0.;
+    std::string  failure;  ///< of the material
+    unsigned int slot = 0; ///< of the cell
   };
 
 
@@ -63,7 +62,46 @@ namespace alveolus
     , regions(regions)
     , conditions(conditions)
     , geometry(state.configuration)
-  {}
+  {
+    // Local indices are those of any vector of the configuration: its own
+    // entries first, then the ghosts.
+    const auto &configuration = state.configuration;
+    const auto &partitioner   = *internal_forces.get_partitioner();
+    std::vector<types::global_dof_index> dofs(
+      configuration.fe.n_dofs_per_cell());
+    for (const auto &cell : configuration.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cells.push_back(cell->active_cell_index());
+          cell->get_dof_indices(dofs);
+          for (const auto dof : dofs)
+            local_dofs.push_back(partitioner.global_to_local(dof));
+        }
+    cells.shrink_to_fit();
+    local_dofs.shrink_to_fit();
+  }
+
+
+
+  template <int dim>
+  std::string
+  MechanicsAssembler<dim>::place_of(const unsigned int slot) const
+  {
+    // The middle of the vertices, and the displacement of the first one
+    const auto        &configuration = state.configuration;
+    const unsigned int n             = configuration.fe.n_dofs_per_cell();
+    Point<dim>         place;
+    for (const auto &cell : configuration.dof_handler.active_cell_iterators())
+      if (cell->active_cell_index() == cells[slot])
+        place = cell->center();
+    for (unsigned int d = 0; d < dim; ++d)
+      place[d] += configuration.mesh_displacement().local_element(
+        local_dofs[slot * n +
+                   configuration.fe.component_to_system_index(d, 0)]);
+    std::ostringstream text;
+    text << place;
+    return text.str();
+  }
 
 
 
@@ -94,8 +132,6 @@ namespace alveolus
   MechanicsAssembler<dim>::assemble(const NodalVector    &increment,
                                     const AssemblyTarget &target)
   {
-    using Iterator =
-      FilteredIterator<typename DoFHandler<dim>::active_cell_iterator>;
     AssemblyResult result;
     const auto    &configuration = state.configuration;
     internal_forces              = 0.;
@@ -105,18 +141,25 @@ namespace alveolus
     if (target.lifted != nullptr)
       *target.lifted = 0.;
 
+    const unsigned int n_dofs      = configuration.fe.n_dofs_per_cell();
+    const auto        &partitioner = *increment.get_partitioner();
+    using Iterator                 = std::vector<unsigned int>::const_iterator;
+
     const auto worker =
       [&](const Iterator &cell, Scratch &scratch, Copy &copy) {
         copy.failure.clear();
-        cell->get_dof_indices(copy.dofs);
-        for (unsigned int i = 0; i < copy.dofs.size(); ++i)
-          scratch.increment[i] = increment(copy.dofs[i]);
-        const unsigned int index = cell->active_cell_index();
+        copy.slot                 = cell - cells.begin();
+        const unsigned int *local = local_dofs.data() + copy.slot * n_dofs;
+        for (unsigned int i = 0; i < n_dofs; ++i)
+          {
+            scratch.increment[i] = increment.local_element(local[i]);
+            copy.dofs[i]         = partitioner.local_to_global(local[i]);
+          }
         try
           {
             copy.status =
-              scratch.kernel.evaluate(index,
-                                      regions[state.history.region(index)],
+              scratch.kernel.evaluate(*cell,
+                                      regions[state.history.region(*cell)],
                                       state.history,
                                       scratch.increment,
                                       target.system != nullptr ? &copy.matrix
@@ -128,7 +171,7 @@ namespace alveolus
             if (!moved_weights.empty() &&
                 copy.status == CellKernel<dim>::Status::good)
               for (unsigned int q = 0; q < geometry.n_points; ++q)
-                moved_weights[index * geometry.n_points + q] =
+                moved_weights[*cell * geometry.n_points + q] =
                   scratch.kernel.moved_weight(q);
           }
         catch (const RunError &error)
@@ -136,48 +179,44 @@ namespace alveolus
             copy.status  = CellKernel<dim>::Status::not_finite;
             copy.failure = error.what();
           }
-        if (copy.status != CellKernel<dim>::Status::good)
-          copy.center = cell->center();
       };
     const auto copier = [&](const Copy &copy) {
+      const unsigned int *local = local_dofs.data() + copy.slot * n_dofs;
       if (copy.status != CellKernel<dim>::Status::good)
         {
           if (result.good)
-            {
-              std::ostringstream reason;
-              Point<dim>         place = copy.center;
-              for (unsigned int d = 0; d < dim; ++d)
-                place[d] +=
-                  state.configuration.mesh_displacement()(copy.dofs[d]);
-              reason << (copy.status == CellKernel<dim>::Status::inverted
-                           ? "an element turned inside out at a quadrature "
-                             "point near ("
-                           : "a material gave no valid stress near (")
-                     << place << ") mm"
-                     << (copy.failure.empty() ? "" : ": " + copy.failure);
-              result.reason = reason.str();
-            }
+            result.reason =
+              (copy.status == CellKernel<dim>::Status::inverted
+                 ? "an element turned inside out at a quadrature point near ("
+                 : "a material gave no valid stress near (") +
+              place_of(copy.slot) + ") mm" +
+              (copy.failure.empty() ? "" : ": " + copy.failure);
           result.good = false;
           return;
         }
-      for (unsigned int i = 0; i < copy.dofs.size(); ++i)
+      double *const forces   = internal_forces.begin();
+      double *const residual = target.residual.begin();
+      for (unsigned int i = 0; i < n_dofs; ++i)
         {
-          internal_forces(copy.dofs[i]) += copy.forces[i];
+          forces[local[i]] += copy.forces[i];
+          residual[local[i]] += copy.forces[i];
           result.force_scale += std::abs(copy.forces[i]);
         }
       result.energy += copy.energy;
       result.energy_moved += copy.energy_moved;
       result.dissipation += copy.dissipation;
-      target.add(copy.matrix, copy.forces, copy.dofs);
+      if (target.system == nullptr)
+        return;
+      target.system->add_cell(copy.slot, copy.matrix, copy.dofs);
+      target.add_lifted(copy.matrix, copy.dofs);
     };
-    WorkStream::run(Iterator(IteratorFilters::LocallyOwnedCell(),
-                             configuration.dof_handler.begin_active()),
-                    Iterator(IteratorFilters::LocallyOwnedCell(),
-                             configuration.dof_handler.end()),
-                    worker,
-                    copier,
-                    Scratch(configuration, geometry),
-                    Copy(configuration.fe.n_dofs_per_cell()));
+    if (!cells.empty())
+      WorkStream::run(cells.begin(),
+                      cells.end(),
+                      worker,
+                      copier,
+                      Scratch(configuration, geometry),
+                      Copy(n_dofs));
     for (auto &condition : conditions)
       condition->add_forces(state, increment, target);
 

@@ -4,7 +4,6 @@
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_values.h>
 
 namespace alveolus
 {
@@ -43,33 +42,48 @@ namespace alveolus
     if (present == known)
       return;
     known.clear();
-    const FE_Q<dim> scalar_fe(configuration.degree);
-    // Jacobians instead of JxW: deal.II aborts on the latter for inverted
-    // cells, which we want to report.
-    FEValues<dim> fe_values(configuration.mapping(),
-                            scalar_fe,
-                            quadrature,
-                            update_gradients | update_jacobians);
-    for (const auto &cell :
-         configuration.mesh.triangulation->active_cell_iterators())
+    // The mesh is isoparametric: Jacobians and gradients come from the
+    // positions of the nodes, as FEValues with the Eulerian mapping would get
+    // them, but without its tables for each cell.
+    const FE_Q<dim>             scalar_fe(configuration.degree);
+    std::vector<Tensor<1, dim>> unit(n_points * n_nodes);
+    for (unsigned int q = 0; q < n_points; ++q)
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        unit[q * n_nodes + a] = scalar_fe.shape_grad(a, quadrature.point(q));
+    std::vector<unsigned int> dof;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      for (unsigned int i = 0; i < dim; ++i)
+        dof.push_back(configuration.fe.component_to_system_index(i, a));
+
+    const NodalVector                    positions = configuration.positions();
+    std::vector<types::global_dof_index> dofs(n_nodes * dim);
+    std::vector<Tensor<1, dim>>          x(n_nodes);
+    for (const auto &cell : configuration.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          fe_values.reinit(cell);
+          cell->get_dof_indices(dofs);
+          for (unsigned int a = 0; a < n_nodes; ++a)
+            for (unsigned int i = 0; i < dim; ++i)
+              x[a][i] = positions(dofs[dof[a * dim + i]]);
           const std::size_t first =
             static_cast<std::size_t>(slot[cell->active_cell_index()]) *
             n_points;
           for (unsigned int q = 0; q < n_points; ++q)
             {
-              const double J =
-                determinant(Tensor<2, dim>(fe_values.jacobian(q)));
+              const Tensor<1, dim> *N = unit.data() + q * n_nodes;
+              Tensor<2, dim>        jacobian;
+              for (unsigned int a = 0; a < n_nodes; ++a)
+                for (unsigned int i = 0; i < dim; ++i)
+                  jacobian[i] += x[a][i] * N[a];
+              const double J = determinant(jacobian);
               if (!(J > 0.))
                 throw RunError("mesh",
                                "an element is inverted at its quadrature point",
                                "start from a valid mesh");
-              all_weights[first + q] = J * quadrature.weight(q);
+              all_weights[first + q]       = J * quadrature.weight(q);
+              const Tensor<2, dim> inverse = invert(jacobian);
               for (unsigned int a = 0; a < n_nodes; ++a)
-                all_gradients[(first + q) * n_nodes + a] =
-                  fe_values.shape_grad(a, q);
+                all_gradients[(first + q) * n_nodes + a] = N[a] * inverse;
             }
         }
     known = std::move(present);

@@ -1,198 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/tensors.h>
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace alveolus
 {
   using dealii::SymmetricTensor;
   using dealii::Tensor;
-
-  namespace
-  {
-    /** A B of tensors that commute. */
-    inline SymmetricTensor<2, 3>
-    symmetric_product(const SymmetricTensor<2, 3> &A,
-                      const SymmetricTensor<2, 3> &B)
-    {
-      SymmetricTensor<2, 3> result;
-      for (unsigned int i = 0; i < 3; ++i)
-        for (unsigned int j = i; j < 3; ++j)
-          result[i][j] =
-            A[i][0] * B[0][j] + A[i][1] * B[1][j] + A[i][2] * B[2][j];
-      return result;
-    }
-  } // namespace
-
-
-
-  Spectral
-  spectral(const SymmetricTensor<2, 3> &tensor)
-  {
-    double a[3][3], q[3][3];
-    double scale = 0.;
-    for (unsigned int i = 0; i < 3; ++i)
-      for (unsigned int j = 0; j < 3; ++j)
-        {
-          a[i][j] = tensor[i][j];
-          q[i][j] = (i == j) ? 1. : 0.;
-          scale   = std::max(scale, std::abs(a[i][j]));
-        }
-
-    // Below this an off-diagonal entry changes no digit of tensor or vectors.
-    const double negligible = 1e-18 * scale;
-
-    constexpr unsigned int pairs[3][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}};
-    for (unsigned int sweep = 0; sweep < 30; ++sweep)
-      {
-        bool rotated = false;
-        for (const auto &[p, r, s] : pairs)
-          {
-            const double off = a[p][r];
-            if (!(std::abs(off) > negligible))
-              continue;
-            rotated = true;
-            // tan of the smaller of the two angles that annihilate a[p][r]
-            const double theta = 0.5 * (a[r][r] - a[p][p]) / off;
-            const double t     = (theta >= 0. ? 1. : -1.) /
-                             (std::abs(theta) + std::sqrt(theta * theta + 1.));
-            const double cosine = 1. / std::sqrt(t * t + 1.);
-            const double sine   = t * cosine;
-            a[p][p] -= t * off;
-            a[r][r] += t * off;
-            a[p][r] = a[r][p] = 0.;
-            const double sp = a[s][p], sr = a[s][r];
-            a[s][p] = a[p][s] = cosine * sp - sine * sr;
-            a[s][r] = a[r][s] = sine * sp + cosine * sr;
-            for (auto &row : q)
-              {
-                const double x = row[p], y = row[r];
-                row[p] = cosine * x - sine * y;
-                row[r] = sine * x + cosine * y;
-              }
-          }
-        if (!rotated)
-          break;
-      }
-
-    std::array<unsigned int, 3> order{{0, 1, 2}};
-    if (a[order[0]][order[0]] < a[order[1]][order[1]])
-      std::swap(order[0], order[1]);
-    if (a[order[1]][order[1]] < a[order[2]][order[2]])
-      std::swap(order[1], order[2]);
-    if (a[order[0]][order[0]] < a[order[1]][order[1]])
-      std::swap(order[0], order[1]);
-
-    Spectral result;
-    for (unsigned int k = 0; k < 3; ++k)
-      {
-        result.values[k] = a[order[k]][order[k]];
-        for (unsigned int i = 0; i < 3; ++i)
-          result.vectors[k][i] = q[i][order[k]];
-      }
-    return result;
-  }
-
-
-
-  SymmetricTensor<2, 3>
-  compose(const std::array<double, 3> &values, const Spectral &basis)
-  {
-    SymmetricTensor<2, 3> result;
-    for (unsigned int i = 0; i < 3; ++i)
-      for (unsigned int j = i; j < 3; ++j)
-        {
-          double sum = 0.;
-          for (unsigned int a = 0; a < 3; ++a)
-            sum += values[a] * basis.vectors[a][i] * basis.vectors[a][j];
-          result[i][j] = sum;
-        }
-    return result;
-  }
-
-
-
-  SymmetricTensor<2, 3>
-  exp(const SymmetricTensor<2, 3> &tensor)
-  {
-    // Taylor series after halving: elastic strains are small, so that a few
-    // products do what an eigen-decomposition would take far longer for.
-    double largest = tensor.norm();
-    if (!(largest < 100.)) // or not a number
-      return tensor_function(tensor,
-                             [](const double x) { return std::exp(x); });
-    unsigned int halved = 0;
-    for (; largest > 0.25; ++halved)
-      largest *= 0.5;
-    const SymmetricTensor<2, 3> a    = tensor / std::pow(2., halved);
-    SymmetricTensor<2, 3>       term = a;
-    SymmetricTensor<2, 3>       rest = a; // of exp(a) - I
-    double                      size = largest;
-    for (unsigned int n = 2; size > 1e-18; ++n)
-      {
-        term = symmetric_product(a, term) / n;
-        rest += term;
-        size *= largest / n;
-      }
-    // exp(2 a) - I = (exp(a) - I)^2 + 2 (exp(a) - I)
-    for (unsigned int n = 0; n < halved; ++n)
-      rest = symmetric_product(rest, rest) + 2. * rest;
-    return rest + dealii::unit_symmetric_tensor<3>();
-  }
-
-
-
-  SymmetricTensor<2, 3>
-  log(const SymmetricTensor<2, 3> &tensor)
-  {
-    return tensor_function(tensor, [](const double x) { return std::log(x); });
-  }
-
-
-
-  double
-  half_log_quotient(const double x, const double y)
-  {
-    const double d = (x - y) / y;
-    // log1p is accurate for any d > -1; only the quotient 0/0 has to be avoided
-    if (std::abs(d) < 1e-8)
-      return 0.5 * (1. - 0.5 * d) / y;
-    return 0.5 * std::log1p(d) / (x - y);
-  }
-
-
-
-  double
-  sinhc(const double x)
-  {
-    return std::abs(x) < 1e-4 ? 1. + x * x / 6. : std::sinh(x) / x;
-  }
-
-
-
-  Polar
-  polar(const Tensor<2, 3> &f)
-  {
-    SymmetricTensor<2, 3> b;
-    for (unsigned int i = 0; i < 3; ++i)
-      for (unsigned int j = i; j < 3; ++j)
-        b[i][j] = f[i] * f[j];
-    const Spectral        s = spectral(b);
-    std::array<double, 3> stretch, inverse;
-    for (unsigned int a = 0; a < 3; ++a)
-      {
-        stretch[a] = std::sqrt(s.values[a]);
-        inverse[a] = 1. / stretch[a];
-      }
-    Polar result;
-    result.V = compose(stretch, s);
-    result.R = Tensor<2, 3>(compose(inverse, s)) * f;
-    return result;
-  }
-
-
 
   std::array<std::array<Tensor<1, 3>, 3>, 3>
   polar_spin(const SymmetricTensor<2, 3> &V)
@@ -363,6 +177,21 @@ namespace alveolus
   congruence(const SymmetricTensor<2, 3> &B)
   {
     Mandel66 A;
+    if (B[0][2] == 0. && B[1][2] == 0.)
+      {
+        const double x = B[0][0], y = B[1][1], z = B[2][2], o = B[0][1];
+        A[0][0] = x * x;
+        A[1][1] = y * y;
+        A[2][2] = z * z;
+        A[0][1] = A[1][0] = o * o;
+        A[0][3] = A[3][0] = root2 * x * o;
+        A[1][3] = A[3][1] = root2 * y * o;
+        A[3][3]           = x * y + o * o;
+        A[4][4]           = x * z;
+        A[5][5]           = y * z;
+        A[4][5] = A[5][4] = o * z;
+        return A;
+      }
     for (unsigned int I = 0; I < 6; ++I)
       for (unsigned int J = I; J < 6; ++J)
         {

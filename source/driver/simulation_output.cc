@@ -33,57 +33,6 @@ namespace alveolus
 
   template <int dim>
   void
-  Simulation<dim>::describe()
-  {
-    log.say("Alveolus " ALVEOLUS_VERSION ": " + scene.title);
-    log.say("  mesh        " + model->mesh.description + "; degree " +
-            std::to_string(scene.degree) + ", " +
-            std::to_string(model->state->configuration.dof_handler.n_dofs()) +
-            " unknowns");
-    if (scene.accuracy().used())
-      {
-        log.say("  accuracy    " + scene.accuracy().chosen());
-        for (const auto &setting : scene.accuracy().settings())
-          log.say("              " + setting);
-      }
-    for (unsigned int r = 0; r < model->regions.size(); ++r)
-      {
-        const auto &definition = scene.regions[r];
-        log.say("  region      " + definition.name + ": " +
-                scene.materials[scene.material_of(definition)].type + ", " +
-                (model->regions[r].mean_dilatation ? "mean dilatation"
-                                                   : "full integration") +
-                ", remodelling " + definition.remodelling + ", " +
-                std::to_string(model->state->history.layout(r).size * 2 *
-                               model->state->history.n_points *
-                               sizeof(double)) +
-                " bytes of history per cell");
-      }
-    for (const auto &condition : model->conditions)
-      log.say("  condition   " + condition->describe());
-    if (model->rezoner)
-      {
-        std::string rules;
-        for (const auto &rule : scene.rezoning_rules)
-          rules += (rules.empty() ? "" : ", ") + rule.name;
-        log.say("  rezoning    " + rules + "; transfer " +
-                scene.transfer_scheme);
-      }
-    else
-      log.say("  rezoning    off (Lagrangian mesh)");
-    if (remesh_plan)
-      log.say("  remeshing   " + scene.remesher_type);
-    log.say("  solver      " + model->equilibrium->linear_solver_name() + ", " +
-            std::to_string(Utilities::MPI::n_mpi_processes(communicator)) +
-            " process(es), " + std::to_string(MultithreadInfo::n_threads()) +
-            " thread(s)");
-    log.say("  output      " + scene.output_directory);
-  }
-
-
-
-  template <int dim>
-  void
   Simulation<dim>::write_history()
   {
     {
@@ -346,6 +295,10 @@ namespace alveolus
     const auto seconds          = phase_seconds();
     for (const char *const phase : phases)
       summary["seconds per phase"][phase] = seconds.at(phase);
+    // Of this process since its start, also where others want the processor
+    const auto cpu = timer.get_summary_data(TimerOutput::total_cpu_time);
+    for (const auto &phase : cpu)
+      summary["CPU seconds per phase"][phase.first] = phase.second;
     summary["checkpoint"] = last_checkpoint.file;
     summary["processes"]  = Utilities::MPI::n_mpi_processes(communicator);
     summary["threads"]    = MultithreadInfo::n_threads();
@@ -366,10 +319,6 @@ namespace alveolus
               number(totals.smallest_quality, 4));
   }
 
-  template void
-  Simulation<2>::describe();
-  template void
-  Simulation<3>::describe();
   template std::map<std::string, double>
   Simulation<2>::phase_seconds() const;
   template std::map<std::string, double>

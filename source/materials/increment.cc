@@ -119,6 +119,160 @@ namespace alveolus
             t[1][2]              = T[5][j] / root2;
           }
     }
+    /** Directions of the velocity gradient that occur in plane strain: xx, xy,
+     * yx, yy, zz. */
+    using Matrix45 = std::array<std::array<double, 5>, 4>;
+
+    /**
+     * dh in Mandel components xx, yy, zz, xy as a linear map of these
+     * directions: of the three pairs of axes only the one in the plane turns.
+     */
+    Matrix45
+    strain_derivative_in_plane(const Increment &increment)
+    {
+      const unsigned int z = increment.b.normal_axis;
+      const unsigned int p = z == 0 ? 1 : 0, r = z == 2 ? 1 : 2;
+      const double       c = increment.b.vectors[p][0];
+      const double       s = increment.b.vectors[p][1];
+      const double B_p = increment.b.values[p], B_r = increment.b.values[r];
+      const double G  = half_log_quotient(B_p, B_r);
+      const double cc = c * c, ss = s * s, cs = c * s;
+      const double G_pr = G * B_r, G_rp = G * B_p;
+
+      // Axes p = (c, s) and r = (-s, c), whose sign cancels
+      const double p_p[4]     = {cc, cs, cs, ss};
+      const double r_r[4]     = {ss, -cs, -cs, cc};
+      const double turning[4] = {-(G_pr + G_rp) * cs,
+                                 G_pr * cc - G_rp * ss,
+                                 G_rp * cc - G_pr * ss,
+                                 (G_pr + G_rp) * cs};
+      Matrix45     P{};
+      for (unsigned int j = 0; j < 4; ++j)
+        {
+          P[0][j] = cc * p_p[j] + ss * r_r[j] - 2. * cs * turning[j];
+          P[1][j] = ss * p_p[j] + cc * r_r[j] + 2. * cs * turning[j];
+          P[3][j] = root2 * (cs * (p_p[j] - r_r[j]) + (cc - ss) * turning[j]);
+        }
+      P[2][4] = 1.;
+      return P;
+    }
+
+    /** T = C P, and what turns with the spin of the plane, see
+     * structural_tangent(). */
+    void
+    structural_tangent_in_plane(const Increment             &increment,
+                                const SymmetricTensor<2, 3> *V,
+                                const Mandel66              &C,
+                                MaterialResponse            &response)
+    {
+      const Matrix45 P = strain_derivative_in_plane(increment);
+      Matrix45       T{};
+      for (unsigned int i = 0; i < 4; ++i)
+        for (unsigned int k = 0; k < 4; ++k)
+          for (unsigned int j = 0; j < 5; ++j)
+            T[i][j] += C[i][k] * P[k][j];
+
+      if (V != nullptr)
+        {
+          // Omega A - A Omega for the spin about z, in Mandel components
+          const auto turned = [](const SymmetricTensor<2, 3> &A) {
+            return std::array<double, 4>{
+              {-2. * A[0][1], 2. * A[0][1], 0., root2 * (A[0][0] - A[1][1])}};
+          };
+          const auto   stress  = turned(response.stress);
+          const auto   strain  = turned(increment.strain());
+          const double factor  = 1. / ((*V)[0][0] + (*V)[1][1]);
+          const double spin[4] = {-(*V)[0][1] * factor,
+                                  -(*V)[1][1] * factor,
+                                  (*V)[0][0] * factor,
+                                  (*V)[0][1] * factor};
+          for (unsigned int i = 0; i < 4; ++i)
+            {
+              const double change = stress[i] - C[i][0] * strain[0] -
+                                    C[i][1] * strain[1] - C[i][3] * strain[3];
+              for (unsigned int j = 0; j < 4; ++j)
+                T[i][j] += change * spin[j];
+            }
+        }
+      const auto store_at = [&](SymmetricTensor<2, 3> &t,
+                                const unsigned int     j) {
+        t[0][0] = T[0][j];
+        t[1][1] = T[1][j];
+        t[2][2] = T[2][j];
+        t[0][1] = T[3][j] / root2;
+      };
+      store_at(response.tangent[0][0], 0);
+      store_at(response.tangent[0][1], 1);
+      store_at(response.tangent[1][0], 2);
+      store_at(response.tangent[1][1], 3);
+      store_at(response.tangent[2][2], 4);
+    }
+
+    bool
+    is_plane(const Increment &increment, const MaterialResponse &response)
+    {
+      return response.plane_strain && increment.b.normal_axis < 3;
+    }
+
+    /**
+     * The tangent of an isotropic law for velocity gradients in the plane and
+     * along its normal, from the same spectral formula: of the three pairs of
+     * axes only the one in the plane has a shear.
+     */
+    void
+    isotropic_tangent_in_plane(const Increment         &increment,
+                               const PrincipalResponse &principal,
+                               MaterialResponse        &response)
+    {
+      const unsigned int z = increment.b.normal_axis;
+      const unsigned int p = z == 0 ? 1 : 0, r = z == 2 ? 1 : 2;
+      const double       c = increment.b.vectors[p][0];
+      const double       s = increment.b.vectors[p][1];
+      const double B_p = increment.b.values[p], B_r = increment.b.values[r];
+      const double G  = principal.shear[z] * half_log_quotient(B_p, B_r);
+      const double cc = c * c, ss = s * s, cs = c * s;
+
+      // Components xx, yy, zz, xy of the change of stress by a stretch along
+      // each axis, and of the shear of the two in the plane
+      const auto along = [&](const unsigned int axis) {
+        const double &first  = principal.normal[p][axis];
+        const double &second = principal.normal[r][axis];
+        return std::array<double, 4>{{first * cc + second * ss,
+                                      first * ss + second * cc,
+                                      principal.normal[z][axis],
+                                      (first - second) * cs}};
+      };
+      const std::array<double, 4> one = along(p), two = along(r),
+                                  three = along(z);
+      // v_r = (-s, c) up to a sign, which cancels
+      const double shear[4]  = {-2. * cs, 2. * cs, 0., cc - ss};
+      const double first[4]  = {cc, cs, cs, ss};
+      const double second[4] = {ss, -cs, -cs, cc};
+      const double G_pr = G * B_r, G_rp = G * B_p;
+      const double turning[4] = {-(G_pr + G_rp) * cs,
+                                 G_pr * cc - G_rp * ss,
+                                 G_rp * cc - G_pr * ss,
+                                 (G_pr + G_rp) * cs};
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int l = 0; l < 2; ++l)
+          {
+            const unsigned int j         = 2 * k + l;
+            auto              &t         = response.tangent[k][l];
+            const auto         component = [&](const unsigned int i) {
+              return one[i] * first[j] + two[i] * second[j] +
+                     shear[i] * turning[j];
+            };
+            t[0][0] = component(0);
+            t[1][1] = component(1);
+            t[2][2] = component(2);
+            t[0][1] = component(3);
+          }
+      auto &t = response.tangent[2][2];
+      t[0][0] = three[0];
+      t[1][1] = three[1];
+      t[2][2] = three[2];
+      t[0][1] = three[3];
+    }
   } // namespace
 
 
@@ -162,6 +316,11 @@ namespace alveolus
     response.energy = principal.energy;
     if (!need_tangent)
       return;
+    if (is_plane(increment, response))
+      {
+        isotropic_tangent_in_plane(increment, principal, response);
+        return;
+      }
 
     Matrix69               T{};
     std::array<Mandel6, 3> axes;
@@ -190,7 +349,10 @@ namespace alveolus
                   const Mandel66   &C,
                   MaterialResponse &response)
   {
-    store(product(C, strain_derivative(increment)), response);
+    if (is_plane(increment, response))
+      structural_tangent_in_plane(increment, nullptr, C, response);
+    else
+      store(product(C, strain_derivative(increment)), response);
   }
 
 
@@ -201,6 +363,11 @@ namespace alveolus
                      const Mandel66              &C,
                      MaterialResponse            &response)
   {
+    if (is_plane(increment, response))
+      {
+        structural_tangent_in_plane(increment, &V, C, response);
+        return;
+      }
     Matrix69   T    = product(C, strain_derivative(increment));
     const auto spin = polar_spin(V);
 

@@ -331,11 +331,11 @@ namespace alveolus
     pack(compose(fabric.values, fabric), trial + fabric_offset, dim);
 
     // Powers of H^2 = ratio^{1/2} T
-    const auto power = [&](const double exponent) {
+    const double log_ratio = 0.5 * std::log(ratio);
+    const auto   power     = [&](const double exponent) {
       std::array<double, 3> values;
       for (unsigned int a = 0; a < 3; ++a)
-        values[a] =
-          std::exp(exponent * (0.5 * std::log(ratio) + fabric.values[a]));
+        values[a] = std::exp(exponent * (log_ratio + fabric.values[a]));
       return compose(values, fabric);
     };
 

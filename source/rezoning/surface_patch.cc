@@ -152,21 +152,19 @@ namespace alveolus
           for (const auto &w : weights[i])
             entries.add(i, w.first);
       }
-    pattern = std::make_unique<SparsityPattern>();
-    pattern->copy_from(entries);
-    matrix = std::make_unique<SparseMatrix<double>>(*pattern);
+    matrix.reinit(entries);
     for (unsigned int i = 0; i < n; ++i)
       {
         double sum = 0.;
         for (const auto &w : weights[i])
           sum += w.second;
-        matrix->set(i, i, 1.);
+        matrix.values[matrix.position(i, i)] = 1.;
         if (is_free[i])
           for (const auto &w : weights[i])
-            matrix->set(i, w.first, -w.second / sum);
+            matrix.values[matrix.position(i, w.first)] = -w.second / sum;
       }
     factors = std::make_unique<Umfpack>();
-    factors->factorize(*matrix);
+    factors->factorize(matrix);
   }
 
 

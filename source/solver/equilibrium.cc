@@ -4,6 +4,8 @@
 
 #include <deal.II/dofs/dof_tools.h>
 
+#include <cmath>
+
 namespace alveolus
 {
   using namespace dealii;
@@ -211,6 +213,22 @@ namespace alveolus
 
 
   template <int dim>
+  bool
+  Equilibrium<dim>::expect_convergence(const std::vector<double> &residuals,
+                                       const std::size_t          first)
+  {
+    // Near the solution r_{k+1} = c r_k^2; c of the last two, or of the step
+    // before. A wrong guess costs an evaluation of the forces, no accuracy.
+    const std::size_t n = residuals.size();
+    if (n > first + 1 && residuals[n - 2] > 0.)
+      contraction = residuals[n - 1] / std::pow(residuals[n - 2], 2);
+    return contraction > 0. && contraction * std::pow(residuals.back(), 2) <
+                                 0.1 * parameters.tolerance;
+  }
+
+
+
+  template <int dim>
   AssemblyResult
   Equilibrium<dim>::assemble(const NodalVector &du,
                              const bool         matrix,
@@ -355,6 +373,8 @@ namespace alveolus
 
     unsigned int n_before_augmentation = 0;
     double       last_norm             = 0.;
+    bool         have_matrix           = true;
+    std::size_t  first                 = lift ? 1 : 0; // of Newton's residuals
     for (;;)
       {
         const double norm  = free_norm(residual_vector);
@@ -369,6 +389,7 @@ namespace alveolus
         if (!lift && (norm <= parameters.tolerance * result.force_scale ||
                       norm <= parameters.absolute_tolerance))
           {
+            expect_convergence(report.residuals, first); // learns from it
             try
               {
                 if (!augment())
@@ -380,6 +401,8 @@ namespace alveolus
               }
             ++report.n_augmentations;
             n_before_augmentation = report.n_iterations;
+            first                 = report.residuals.size();
+            have_matrix           = true;
             result                = assemble(increment, true, false);
             if (!result.good)
               return repeat(result.reason, "material or mesh");
@@ -392,6 +415,13 @@ namespace alveolus
                           Utilities::to_string(norm / scale) + ")",
                         "Newton");
 
+        if (!have_matrix)
+          {
+            ++report.n_late_matrices;
+            have_matrix = true;
+            result      = assemble(increment, true, false);
+          }
+        const bool last = !lift && expect_convergence(report.residuals, first);
         residual_vector *= -1.;
         if (lift)
           residual_vector += lifted;
@@ -431,7 +461,8 @@ namespace alveolus
           }
 
         // Backtracking: the full step is assembled with its matrix at once,
-        // because it is nearly always taken. The first, inhomogeneous step
+        // because it is nearly always taken, unless it is expected to be the
+        // last: then the forces alone tell. The first, inhomogeneous step
         // cannot be shortened (it would miss the prescribed values), only
         // judged. A step is good if the residual falls or its work along the
         // step does: with a stiff bulk a good step raises the norm for an
@@ -446,7 +477,8 @@ namespace alveolus
             trial.zero_out_ghost_values();
             trial.add(fraction, correction);
             trial.update_ghost_values();
-            result = assemble(trial, true, false);
+            have_matrix = !(last && halvings == 0);
+            result      = assemble(trial, have_matrix, false);
             if (result.good &&
                 (lift ||
                  free_norm(residual_vector) < (1. - 1e-4 * fraction) * norm ||

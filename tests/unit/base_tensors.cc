@@ -81,6 +81,45 @@ TEST(Tensors, ExpAndLogAreInverse)
     }
 }
 
+// Plane strain has closed forms of its own; turned out of the plane, the same
+// tensor goes the general way.
+TEST(Tensors, PlaneStrainEqualsTheGeneralWay)
+{
+  for (unsigned int n = 0; n < 400; ++n)
+    {
+      const double size = n % 2 == 0 ? 1. : (n % 3 == 0 ? 1e-9 : 0.05);
+      auto         h    = size * random_symmetric();
+      h[0][2] = h[1][2]    = 0.;
+      const Tensor<2, 3> R = polar(random_gradient(0.5)).R;
+
+      const Spectral s = spectral(h);
+      ASSERT_LT(s.normal_axis, 3u);
+      EXPECT_EQ(s.vectors[s.normal_axis][2], 1.);
+      EXPECT_GE(s.values[0], s.values[1]);
+      EXPECT_GE(s.values[1], s.values[2]);
+      EXPECT_LT((compose(s.values, s) - h).norm(), 1e-15 * size);
+      const Spectral turned = spectral(rotate(R, h));
+      for (unsigned int a = 0; a < 3; ++a)
+        EXPECT_NEAR(s.values[a], turned.values[a], 1e-14 * size);
+
+      EXPECT_LT((exp(rotate(R, h)) - rotate(R, exp(h))).norm(), 2e-14);
+
+      auto f  = random_gradient(0.4);
+      f[0][2] = f[1][2] = f[2][0] = f[2][1] = 0.;
+      if (determinant(f) > 0.1 && f[2][2] > 0.)
+        {
+          const Polar p = polar(f);
+          EXPECT_LT((Tensor<2, 3>(p.V) * p.R - f).norm(), 1e-14);
+          EXPECT_LT((rotate(R, p.V) - polar(R * f).V).norm(), 1e-13);
+        }
+
+      const auto    x      = random_symmetric();
+      const Mandel6 mapped = congruence(h) * to_mandel(x);
+      EXPECT_LT((from_mandel(mapped) - symmetric_product(h, x, h)).norm(),
+                1e-15);
+    }
+}
+
 TEST(Tensors, LogQuotientOfNearlyEqualArguments)
 {
   for (const double gap : {1., 1e-2, 1e-5, 1e-7, 1.1e-8, 0.9e-8, 1e-12, 0.})

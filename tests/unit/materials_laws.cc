@@ -321,6 +321,37 @@ TEST(RemodelledBone, TangentElasticAndPlastic)
         }
 }
 
+// In plane strain a part of the tangent is asked for, and has a shorter way.
+TEST(RemodelledBone, TangentOfPlaneStrainIsThatOfThreeDimensions)
+{
+  for (const bool fabric : {false, true})
+    for (unsigned int n = 0; n < 200; ++n)
+      {
+        const auto material = make("remodelled bone", matrix, 2, true, true);
+        Sample     general(*material, 2);
+        randomize(general, (n % 2) ? 0.02 : 1e-3, fabric);
+        general.value("plastic strain") = 0.05;
+        Sample plane(*material, 2);
+        plane.old                   = general.old;
+        plane.response.plane_strain = true;
+        const auto f = unit + random_velocity(2, (n % 2) ? 0.15 : 1e-3);
+        general.evaluate(f);
+        plane.evaluate(f);
+        EXPECT_EQ((general.response.stress - plane.response.stress).norm(), 0.);
+        double scale = 0., error = 0.;
+        for (unsigned int k = 0; k < 3; ++k)
+          for (unsigned int l = 0; l < 3; ++l)
+            if ((k < 2 && l < 2) || k == l)
+              {
+                const auto &T = general.response.tangent[k][l];
+                scale         = std::max(scale, T.norm());
+                error =
+                  std::max(error, (T - plane.response.tangent[k][l]).norm());
+              }
+        EXPECT_LT(error, 1e-13 * scale);
+      }
+}
+
 TEST(RemodelledBone, StressFromEnergyInCoaxialStates)
 {
   double worst = 0.;

@@ -16,8 +16,8 @@ namespace alveolus
 {
   /**
    * Matrix and solver of one sparse linear system. The only place that knows
-   * which library does the algebra: deal.II's matrix with UMFPACK on one
-   * process, Trilinos with MUMPS or ML on several.
+   * which library does the algebra: UMFPACK on one process, Trilinos with MUMPS
+   * or ML on several.
    */
   class LinearSystem
   {
@@ -32,6 +32,18 @@ namespace alveolus
     virtual void
     add(const dealii::FullMatrix<double>                   &cell_matrix,
         const std::vector<dealii::types::global_dof_index> &dofs) = 0;
+
+    /**
+     * The same for a matrix that comes in every assembly: @p slot, counted from
+     * zero, stands for @p dofs, so that where its entries belong may be kept.
+     */
+    virtual void
+    add_cell(const unsigned int /*slot*/,
+             const dealii::FullMatrix<double>                   &cell_matrix,
+             const std::vector<dealii::types::global_dof_index> &dofs)
+    {
+      add(cell_matrix, dofs);
+    }
 
     /** End of assembly: exchange between processes. */
     virtual void
@@ -88,6 +100,30 @@ namespace alveolus
     pivot_ratio() const
     {
       return 1.;
+    }
+
+    /** Stored entries of the matrix, on this process. */
+    virtual std::size_t
+    n_nonzeros() const
+    {
+      return 0;
+    }
+
+    /** Bytes of the matrix and what belongs to it, without its factors. */
+    virtual std::size_t
+    memory_consumption() const
+    {
+      return 0;
+    }
+
+    /**
+     * Bytes that the factors of a direct solver are expected to take, from an
+     * analysis of the pattern alone; 0 where there is no such analysis.
+     */
+    virtual std::size_t
+    expected_factor_bytes()
+    {
+      return 0;
     }
 
     /** Name for the log. */

@@ -2,30 +2,38 @@
 #ifndef alveolus_algebra_umfpack_h
 #define alveolus_algebra_umfpack_h
 
-#include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/vector.h>
+#include <alveolus/algebra/csr_matrix.h>
 
-#include <vector>
+#include <deal.II/lac/vector.h>
 
 namespace alveolus
 {
   /**
-   * UMFPACK through its C interface for a deal.II matrix whose sparsity pattern
-   * stays: the symbolic analysis is made once and reused by every numerical
+   * UMFPACK through its C interface for a matrix whose sparsity pattern stays:
+   * the symbolic analysis is made once and reused by every numerical
    * factorisation, which deal.II's own wrapper repeats each time.
    */
   class Umfpack
   {
   public:
-    Umfpack() = default;
+    /**
+     * @param refine improve each solution by up to two steps of iterative
+     *        refinement, each of which costs another solution. Newton's method
+     *        is such an iteration itself and does without.
+     */
+    explicit Umfpack(const bool refine = true);
     ~Umfpack();
     Umfpack(const Umfpack &) = delete;
     Umfpack &
     operator=(const Umfpack &) = delete;
 
-    /** Factorise @p matrix. @throws RunError if it is singular */
+    /**
+     * Factorise @p matrix, which must outlive the solutions with it and, as
+     * long as it is the same object, keep its pattern.
+     * @throws RunError if it is singular
+     */
     void
-    factorize(const dealii::SparseMatrix<double> &matrix);
+    factorize(const CsrMatrix &matrix);
 
     /** x = A^{-1} b with the last factorisation. */
     void
@@ -42,19 +50,25 @@ namespace alveolus
       return smallest_over_largest_pivot;
     }
 
+    /**
+     * Bytes the factors of @p matrix are expected to take: by the symmetric
+     * analysis without pivoting, or UMFPACK's upper bound where the pattern is
+     * not symmetric. Analyses the pattern if that was not done yet.
+     */
+    std::size_t
+    expected_bytes(const CsrMatrix &matrix);
+
   private:
     double smallest_over_largest_pivot = 1.;
 
     void
-    analyse(const dealii::SparseMatrix<double> &matrix);
+    analyse(const CsrMatrix &matrix);
 
-    const dealii::SparsityPattern *pattern  = nullptr;
-    void                          *symbolic = nullptr;
-    void                          *numeric  = nullptr;
-    std::vector<long>              row_begin;
-    std::vector<long>              columns;
-    std::vector<std::size_t> source; ///< position of each entry in deal.II
-    std::vector<double>      values;
+    const bool       refine;
+    const CsrMatrix *factorised = nullptr;
+    double           expected   = 0.; ///< entries of both factors
+    void            *symbolic   = nullptr;
+    void            *numeric    = nullptr;
   };
 } // namespace alveolus
 

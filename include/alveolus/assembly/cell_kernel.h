@@ -97,6 +97,10 @@ namespace alveolus
       double                              pressure           = 0.;
       MaterialResponse                    response;
       std::vector<dealii::Tensor<1, dim>> gradients; ///< with respect to x
+      /** Derivatives that mean dilatation needs, with dv_n / J_n: */
+      dealii::Tensor<2, dim> stress_by_theta;      ///< of the deviator
+      dealii::Tensor<2, dim> pressure_by_gradient; ///< of tr tau/(3 theta)
+      double                 pressure_by_theta = 0.;
     };
 
     Status
@@ -106,7 +110,13 @@ namespace alveolus
                     const dealii::Vector<double> &increment,
                     const bool                    need_tangent);
     void
-    add_tangent(dealii::FullMatrix<double> &matrix);
+    fill_tangent(dealii::FullMatrix<double> &matrix);
+    /** @tparam n_static number of nodes if known beforehand, otherwise 0. */
+    template <unsigned int n_static>
+    void
+    add_point_tangents();
+    void
+    add_dilatation_tangent();
 
     /** Coefficients of the L2 projection of values given at the points. */
     void
@@ -120,8 +130,7 @@ namespace alveolus
 
     const Configuration<dim> &configuration;
     const StepGeometry<dim>  &geometry;
-    std::vector<unsigned int> component; ///< of each dof
-    std::vector<unsigned int> node;      ///< scalar shape function of each dof
+    std::vector<unsigned int> dof; ///< of node a, component i at [a * dim + i]
     bool                      mean_dilatation = false;
     const double             *geometry_weight = nullptr; ///< of the cell
     std::vector<Point>        points;
@@ -130,9 +139,18 @@ namespace alveolus
     dealii::FullMatrix<double>       mass_inverse;
     std::vector<double>              coefficients;
     std::vector<double>              coefficients_pressure;
-    /** Variation of the stress per dof and point. */
-    std::vector<dealii::SymmetricTensor<2, 3>> stress_variation;
-    std::vector<double>                        theta_variation;
+    /**
+     * Work space of the tangent: d force (node a, component i) by d u (node b,
+     * component k) at [((b * dim + k) * dim + i) * n_nodes + a].
+     */
+    std::vector<double> tangent;
+    double              moduli[dim][dim][dim][dim]; ///< a_ijkl at [k][i][j][l]
+    std::vector<double> gradients_by_component;
+    /** Rows of all dofs for each function of FE_DGP, see
+     * add_dilatation_tangent.
+     */
+    std::vector<double> volume_rows, pressure_rows, deviator_rows, theta_rows,
+      dp_rows;
   };
 } // namespace alveolus
 

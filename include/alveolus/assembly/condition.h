@@ -63,11 +63,16 @@ namespace alveolus
     const dealii::AffineConstraints<double> *lift   = nullptr;
     NodalVector                             *lifted = nullptr;
 
-    /** Add forces and (if there is a system) the matrix of one cell. */
+    /** Add forces and (if there is a system) the matrix of some dofs. */
     void
     add(const dealii::FullMatrix<double>                   &matrix,
         const dealii::Vector<double>                       &forces,
         const std::vector<dealii::types::global_dof_index> &dofs) const;
+
+    /** Minus the matrix times prescribed increments, if that is asked for. */
+    void
+    add_lifted(const dealii::FullMatrix<double>                   &matrix,
+               const std::vector<dealii::types::global_dof_index> &dofs) const;
   };
 
   /** The scene's interface laws by name. */

@@ -76,11 +76,17 @@ namespace alveolus
     struct Scratch;
     struct Copy;
 
+    /** Where a cell is now, for messages [mm]. */
+    std::string
+    place_of(const unsigned int slot) const;
+
     State<dim>                &state;
     const std::vector<Region> &regions;
     Conditions                &conditions;
     StepGeometry<dim>          geometry;
     std::vector<double>        moved_weights; ///< empty unless asked for
+    std::vector<unsigned int>  cells;         ///< active indices of owned cells
+    std::vector<unsigned int>  local_dofs; ///< of these cells, in a NodalVector
   };
 } // namespace alveolus
 

@@ -13,8 +13,7 @@ namespace alveolus
   /**
    * Shape gradients and weights of the mesh x_n at all quadrature points of the
    * owned cells. The mesh stands still during the equilibrium iterations of a
-   * step, so they are computed once a step through FEValues and kept in flat
-   * arrays.
+   * step, so they are computed once a step and kept in flat arrays.
    */
   template <int dim>
   class StepGeometry
@@ -55,7 +54,7 @@ namespace alveolus
     const unsigned int            n_nodes; ///< scalar shape functions of a cell
 
   private:
-    const Configuration<dim> &configuration;
+    const Configuration<dim>           &configuration;
     std::vector<unsigned int>           slot; ///< of each active cell, if owned
     std::vector<dealii::Tensor<1, dim>> all_gradients;
     std::vector<double>                 all_weights;

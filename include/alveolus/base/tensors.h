@@ -14,6 +14,12 @@ namespace alveolus
   {
     std::array<double, 3>               values;
     std::array<dealii::Tensor<1, 3>, 3> vectors;
+    /**
+     * Which eigenvector is e_z, if the tensor has no xz and yz components
+     * (plane strain); 3 for any other tensor. Turning the vectors does not
+     * change it.
+     */
+    unsigned int normal_axis = 3;
   };
 
   /**

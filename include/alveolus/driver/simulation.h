@@ -216,6 +216,13 @@ namespace alveolus
     std::map<std::string, double>
     phase_seconds() const;
 
+    /** Say which optional parts are on, and which are off. */
+    void
+    describe_parts();
+    /** Say what the scene takes: unknowns, entries of the matrix, bytes. */
+    void
+    describe_cost();
+
     HistoryFile::Row
     history_row();
     void

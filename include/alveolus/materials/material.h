@@ -38,6 +38,12 @@ namespace alveolus
      * [MPa]. The caller sets it to zero; laws without dissipation leave it.
      */
     double dissipation = 0.;
+
+    /**
+     * Set by the caller: the deformation is one of plane strain, so that the
+     * tangent is only asked for k, l < 2 and for k = l = 2.
+     */
+    bool plane_strain = false;
   };
 
   /**

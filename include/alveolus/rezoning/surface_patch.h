@@ -83,8 +83,7 @@ namespace alveolus
     /** Quadrilaterals at each node, each with the place of the node in it. */
     std::vector<std::vector<std::pair<unsigned int, unsigned int>>> corners;
     std::vector<Place>                                              initial;
-    std::unique_ptr<dealii::SparsityPattern>                        pattern;
-    std::unique_ptr<dealii::SparseMatrix<double>>                   matrix;
+    CsrMatrix                                                       matrix;
     std::unique_ptr<Umfpack>                                        factors;
   };
 } // namespace alveolus

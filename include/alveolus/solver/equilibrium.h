@@ -23,10 +23,12 @@ namespace alveolus
     double              linear_residual     = 0.; ///< relative, the largest
     unsigned int        n_direct_instead    = 0;  ///< failed iterations
     unsigned int        n_augmentations     = 0;  ///< of multipliers
-    double              energy              = 0.; ///< stored [mJ (per mm)]
-    double energy_moved = 0.; ///< on the moved mesh, see CellKernel
-    double dissipation  = 0.; ///< plastic work of the increment [mJ (per mm)]
-    double force_scale  = 0.; ///< see AssemblyResult
+    /** Iterations after the one that was expected to be the last. */
+    unsigned int n_late_matrices = 0;
+    double       energy          = 0.; ///< stored [mJ (per mm)]
+    double       energy_moved    = 0.; ///< on the moved mesh, see CellKernel
+    double dissipation = 0.; ///< plastic work of the increment [mJ (per mm)]
+    double force_scale = 0.; ///< see AssemblyResult
     /** L1 norm of the residual before the step over the internal forces. */
     double imbalance = 0.;
   };
@@ -141,6 +143,13 @@ namespace alveolus
       return system->name();
     }
 
+    /** The matrix and its solver, for what they tell. */
+    LinearSystem &
+    linear_system()
+    {
+      return *system;
+    }
+
   private:
     void
     set_constraints(const Interval &interval);
@@ -157,6 +166,10 @@ namespace alveolus
     free_work(const NodalVector &u, const NodalVector &v) const;
     AssemblyResult
     assemble(const NodalVector &du, const bool matrix, const bool lift);
+    /** Whether one more iteration should do, from the residuals so far. */
+    bool
+    expect_convergence(const std::vector<double> &residuals,
+                       const std::size_t          first);
     /** Residual without increment under the loads already begun. */
     AssemblyResult
     assemble_without_increment();
@@ -174,6 +187,8 @@ namespace alveolus
     NodalVector               residual_vector;
     NodalVector               lifted;
     const Imbalance          *held_imbalance = nullptr;
+    /** c of r_{k+1} = c r_k^2 for relative residuals; 0 is unknown. */
+    double contraction = 0.;
   };
 } // namespace alveolus
 
