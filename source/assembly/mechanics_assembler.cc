@@ -46,9 +46,9 @@ namespace alveolus
     FullMatrix<double>                   matrix;
     Vector<double>                       forces;
     std::vector<types::global_dof_index> dofs;
-    double                               energy = 0.;
-    std::string                          failure; ///< of the material
-    Point<dim>                           center;
+    double      energy = 0., energy_moved = 0., dissipation = 0.;
+    std::string failure; ///< of the material
+    Point<dim>  center;
   };
 
 
@@ -64,6 +64,17 @@ namespace alveolus
     , conditions(conditions)
     , geometry(state.configuration)
   {}
+
+
+
+  template <int dim>
+  void
+  MechanicsAssembler<dim>::keep_moved_weights()
+  {
+    moved_weights.resize(
+      state.configuration.mesh.triangulation->n_active_cells() *
+      geometry.n_points);
+  }
 
 
 
@@ -111,7 +122,14 @@ namespace alveolus
                                       target.system != nullptr ? &copy.matrix
                                                                : nullptr,
                                       copy.forces);
-            copy.energy = scratch.kernel.energy;
+            copy.energy       = scratch.kernel.energy;
+            copy.energy_moved = scratch.kernel.energy_moved;
+            copy.dissipation  = scratch.kernel.dissipation;
+            if (!moved_weights.empty() &&
+                copy.status == CellKernel<dim>::Status::good)
+              for (unsigned int q = 0; q < geometry.n_points; ++q)
+                moved_weights[index * geometry.n_points + q] =
+                  scratch.kernel.moved_weight(q);
           }
         catch (const RunError &error)
           {
@@ -148,6 +166,8 @@ namespace alveolus
           result.force_scale += std::abs(copy.forces[i]);
         }
       result.energy += copy.energy;
+      result.energy_moved += copy.energy_moved;
+      result.dissipation += copy.dissipation;
       target.add(copy.matrix, copy.forces, copy.dofs);
     };
     WorkStream::run(Iterator(IteratorFilters::LocallyOwnedCell(),
@@ -169,8 +189,11 @@ namespace alveolus
       target.system->compress();
 
     const MPI_Comm communicator = configuration.communicator();
-    result.force_scale = Utilities::MPI::sum(result.force_scale, communicator);
-    result.energy      = Utilities::MPI::sum(result.energy, communicator);
+    for (double *sum : {&result.force_scale,
+                        &result.energy,
+                        &result.energy_moved,
+                        &result.dissipation})
+      *sum = Utilities::MPI::sum(*sum, communicator);
     // The message of the lowest process that has one is everybody's.
     const unsigned int me = Utilities::MPI::this_mpi_process(communicator);
     const unsigned int n  = Utilities::MPI::n_mpi_processes(communicator);

@@ -34,6 +34,15 @@ namespace alveolus
   void
   StepGeometry<dim>::update()
   {
+    // A rejected step and the books of energy come back to the same mesh.
+    const NodalVector  &d = configuration.mesh_displacement();
+    std::vector<double> present;
+    present.reserve(configuration.locally_relevant.n_elements());
+    for (const auto i : configuration.locally_relevant)
+      present.push_back(d(i));
+    if (present == known)
+      return;
+    known.clear();
     const FE_Q<dim> scalar_fe(configuration.degree);
     // Jacobians instead of JxW: deal.II aborts on the latter for inverted
     // cells, which we want to report.
@@ -63,6 +72,7 @@ namespace alveolus
                   fe_values.shape_grad(a, q);
             }
         }
+    known = std::move(present);
   }
 
 

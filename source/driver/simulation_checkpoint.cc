@@ -94,6 +94,8 @@ namespace alveolus
       remesh_plan->save(blocks);
     if (bone_mass)
       bone_mass->save(*portable, blocks);
+    if (energy_books)
+      energy_books->save(blocks);
     if (reference_outline)
       {
         reference_outline->save(blocks);
@@ -110,6 +112,9 @@ namespace alveolus
                                    totals.unconverged_rezonings,
                                    totals.max_iterations_of_a_step,
                                    rejected_attempts});
+    blocks.put("totals/bounds",
+               BlockFile::Integers{totals.most_beyond_bounds,
+                                   findings.n_beyond_bounds});
     blocks.put("extremes",
                BlockFile::Numbers{totals.smallest_quality,
                                   totals.largest_transfer_error});
@@ -198,6 +203,8 @@ namespace alveolus
       remesh_plan->load(blocks);
     if (bone_mass)
       bone_mass->load(*portable, blocks);
+    if (energy_books && blocks.has("energy books"))
+      energy_books->load(blocks);
 
     const auto &t = blocks.integers("totals");
     if (t.size() != 9)
@@ -212,6 +219,14 @@ namespace alveolus
     totals.max_iterations_of_a_step = t[7];
     rejected_attempts               = t[8];
     // Not in checkpoints of earlier versions
+    if (blocks.has("totals/bounds"))
+      {
+        const auto &bounds = blocks.integers("totals/bounds");
+        if (bounds.size() != 2)
+          blocks.refuse("totals/bounds", "does not hold 2 integers");
+        totals.most_beyond_bounds = bounds[0];
+        findings.n_beyond_bounds  = bounds[1];
+      }
     if (blocks.has("totals/further"))
       {
         const auto &further = blocks.integers("totals/further");

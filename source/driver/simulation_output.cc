@@ -93,6 +93,13 @@ namespace alveolus
         std::min(totals.smallest_quality, quality.smallest_scaled_jacobian);
       warn_of_quality();
     }
+    if (findings.n_beyond_bounds > totals.most_beyond_bounds)
+      {
+        totals.most_beyond_bounds = findings.n_beyond_bounds;
+        log.note(std::to_string(findings.n_beyond_bounds) +
+                 " point(s) beyond the bounds of their history, worst " +
+                 findings.worst);
+      }
     last_row = history_row();
     TimerOutput::Scope scope(timer, "output");
     on_first_process<RunError>(communicator,
@@ -177,6 +184,8 @@ namespace alveolus
                          bone_mass->by_volume_change);
         row.emplace_back("mass through boundaries [mg]",
                          bone_mass->through_boundary);
+        if (scene.remesher)
+          row.emplace_back("mass by remeshing [mg]", bone_mass->by_remeshing);
         row.emplace_back("least density [g/cc]", density.first);
         row.emplace_back("greatest density [g/cc]", density.second);
         row.emplace_back("density change [g/cc]",
@@ -191,6 +200,7 @@ namespace alveolus
         row.emplace_back("swept fraction", swept_fraction);
         row.emplace_back("limited values", totals.limited);
       }
+    row.emplace_back("points beyond bounds", findings.n_beyond_bounds);
     if (remesh_plan)
       row.emplace_back("remeshes", remesh_plan->n_remeshes());
     if (reference_outline)
@@ -203,6 +213,9 @@ namespace alveolus
                            errors[i]);
       }
     row.emplace_back("stored energy [mJ]", mechanics_report.energy);
+    if (energy_books)
+      for (const auto &value : energy_books->record(*model))
+        row.push_back(value);
     const auto seconds = phase_seconds();
     for (const char *const phase : phases)
       row.emplace_back(std::string(phase) + " [s]", seconds.at(phase));
@@ -296,10 +309,11 @@ namespace alveolus
                        : 0.;
     summary["most Newton iterations of a step"] =
       totals.max_iterations_of_a_step;
-    summary["last residual history"]    = mechanics_report.residuals;
-    summary["smallest scaled Jacobian"] = totals.smallest_quality;
-    summary["inverted corners"]         = quality.n_inverted_corners;
-    summary["limited values"]           = totals.limited;
+    summary["last residual history"]     = mechanics_report.residuals;
+    summary["smallest scaled Jacobian"]  = totals.smallest_quality;
+    summary["inverted corners"]          = quality.n_inverted_corners;
+    summary["limited values"]            = totals.limited;
+    summary["most points beyond bounds"] = totals.most_beyond_bounds;
     if (model->rezoner)
       {
         summary["rezonings cut back"]      = totals.cut_back;
@@ -316,8 +330,13 @@ namespace alveolus
         summary["mass by remodelling [mg]"]     = bone_mass->by_remodelling;
         summary["mass by volume change [mg]"]   = bone_mass->by_volume_change;
         summary["mass through boundaries [mg]"] = bone_mass->through_boundary;
-        summary["bone mass balance"]            = bone_mass->balance();
+        if (scene.remesher)
+          summary["mass by remeshing [mg]"] = bone_mass->by_remeshing;
+        summary["bone mass balance"] = bone_mass->balance();
       }
+    if (energy_books)
+      for (const auto &[name, value] : energy_books->totals())
+        summary["energy"][name] = value;
     summary["cells"]    = model->mesh.triangulation->n_global_active_cells();
     summary["unknowns"] = model->state->configuration.dof_handler.n_dofs();
     summary["history [bytes]"]  = history_bytes;

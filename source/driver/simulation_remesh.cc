@@ -43,9 +43,13 @@ namespace alveolus
     Remeshed best;
     if (!candidates.empty())
       {
+        typename OverlapTransfer<dim>::Limits limits;
+        limits.uncovered = scene.remesh_plan.uncovered_part;
         const OverlapTransfer<dim> overlap(old.configuration,
                                            old.history,
-                                           scene.transfer_scheme);
+                                           scene.transfer_scheme,
+                                           "density",
+                                           limits);
         for (auto &candidate : candidates)
           {
             Remeshed tried;
@@ -115,9 +119,13 @@ namespace alveolus
     if (bone_mass)
       {
         auto books = std::make_unique<BoneMass<dim>>(*model->state);
-        books->take_over(*bone_mass);
+        books->take_over(*bone_mass,
+                         best.transfer.content_gained(),
+                         best.transfer.content_after());
         bone_mass = std::move(books);
       }
+    if (energy_books)
+      energy_books->book_remesh(*model);
     remesh_plan->tried(model->state->time,
                        best.after.smallest_scaled_jacobian,
                        true);
@@ -127,7 +135,8 @@ namespace alveolus
             std::to_string(best.settling.n_iterations) +
             " Newton iterations from an imbalance of " +
             number(best.imbalance, 3));
-    quality = best.after;
+    quality  = best.after;
+    findings = check_state(*model->state, model->regions, false);
     if (reference_outline)
       note_reference_volumes();
     if (totals.steps > 0)
@@ -235,6 +244,9 @@ namespace alveolus
 
     clock.restart();
     settle(result);
+    const StateFindings settled = check_state(state, fresh.regions, false);
+    if (!settled.garbage.empty())
+      throw RunError("Remeshing", settled.garbage, "try other densities");
     result.seconds_settling = clock.wall_time();
     result.after            = fresh.quality();
     return result;
@@ -313,6 +325,8 @@ namespace alveolus
     row.emplace_back("Newton iterations", taken.settling.n_iterations);
     row.emplace_back("limited values", taken.transfer.n_limited);
     row.emplace_back("sub-cells not covered", taken.transfer.n_uncovered);
+    row.emplace_back("largest uncovered part",
+                     taken.transfer.largest_uncovered_part());
     row.emplace_back("nodes outside", taken.transfer.n_nodes_outside);
     row.emplace_back("their largest distance [mm]",
                      taken.transfer.largest_distance);

@@ -60,6 +60,14 @@ namespace alveolus
                       "The forces a remesh leaves unbalanced are released in "
                       "parts, halved at most this many times.",
                       Patterns::Integer(0, 30));
+    prm.add_parameter("Largest uncovered part",
+                      uncovered_part,
+                      "A new mesh is refused if more than this part of the "
+                      "volume of a region is outside the old mesh of the "
+                      "region. There the history takes the mean over what is "
+                      "covered, or the nearest value. Thin layers with coarse "
+                      "curved walls need more.",
+                      Patterns::Double(0., 1.));
   }
 
   RemeshPlan::RemeshPlan(const Parameters &parameters, const std::string &where)

@@ -174,9 +174,12 @@ namespace alveolus
       "subsection of that name; its history is transferred by overlap in the "
       "order of `Transfer / Scheme`. When to remesh:",
       out);
+    write_registry_3d<Remesher>(out);
     write_section<RemeshPlan::Parameters>("Remeshing: when", out);
-    out << "## Monitor\n\n`Inverted corners` (stop or report), `Minimum "
-           "quality`, `Warn below quality`.\n\n";
+    out
+      << "## Monitor\n\n`Inverted corners` (stop or report), `Minimum "
+         "quality`, `Warn below quality`, `Energy balance` (books of work and "
+         "energy).\n\n";
     write_section<StepControl::Parameters>("Time", out);
     write_registry<Recorder<2>>("Records", members, out);
     out << "## Output\n\n`Directory`, `Fields`, `Field interval`.\n\n";

@@ -108,6 +108,16 @@ namespace alveolus
                   " at most (hanging nodes)",
                 "set it to " + std::to_string(remesher->largest_degree()) +
                   ", or choose another `Remeshing / Type`");
+    if (remesher && !remesher->can_keep_lattices())
+      for (const auto &rule : rezoning_rules)
+        if (rule.object->needs_lattices())
+          found.add(text.origin("Rezoning/" + rule.name + "/Type") + ": " +
+                      rule.where + " / Type",
+                    "the rule '" + rule.type +
+                      "' needs regions whose cells form lattices, and the "
+                      "remesher '" +
+                      remesher_type + "' makes none",
+                    "use Giuliani or barrier for these regions");
     if (!rezoning_rules.empty())
       found.collect([&]() { rezoning_plan.check("Rezoning"); });
     if (time.initial_step < time.minimum_step)
@@ -303,6 +313,12 @@ namespace alveolus
                       "A run whose smallest scaled Jacobian falls below this "
                       "stops; -1 is never.",
                       Patterns::Double(-1., 1.));
+    prm.add_parameter("Energy balance",
+                      energy_balance,
+                      "Keep books of work and energy, with columns in the "
+                      "history and totals in the summary (costs one assembly "
+                      "of forces a step).",
+                      Patterns::Bool());
     prm.leave_subsection();
 
     prm.enter_subsection("Time");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/algebra/adaptive_tolerance.h>
 #include <alveolus/solver/equilibrium.h>
 
 #include <deal.II/dofs/dof_tools.h>
@@ -15,6 +16,26 @@ namespace alveolus
      * stiffnesses may reach it, too, so that it only explains failures.
      */
     constexpr double nearly_singular = 1e-14;
+
+    /**
+     * Residual asked of an iterative linear solver, relative to the right hand
+     * side: small enough not to be felt by Newton's method (choice 2 of
+     * Eisenstat & Walker, SIAM J. Sci. Comput. 17 (1996) 16-32), and far below
+     * the residual at which Newton's method ends.
+     * @param norm, last_norm nonlinear residual now and before the last
+     *        correction; 0 if there was none
+     * @param enough residual at which Newton's method ends
+     */
+    double
+    linear_tolerance(const double norm,
+                     const double last_norm,
+                     const double enough)
+    {
+      constexpr double largest = 1e-2;
+      const double     ratio   = last_norm > 0. ? norm / last_norm : 1.;
+      return std::max(std::min(largest, 0.5 * ratio * ratio),
+                      1e-2 * enough / norm);
+    }
   } // namespace
 
   template <int dim>
@@ -67,7 +88,8 @@ namespace alveolus
     prm.add_parameter(
       "Linear tolerance",
       linear_tolerance,
-      "Relative residual at which iterative linear solvers stop.",
+      "Relative residual at which iterative linear solvers stop; earlier in "
+      "Newton iterations that are still far from the solution.",
       Patterns::Double(1e-15, 0.1));
   }
 
@@ -223,10 +245,24 @@ namespace alveolus
 
 
   template <int dim>
+  AssemblyResult
+  Equilibrium<dim>::assemble_committed()
+  {
+    const Interval now{state.time, state.time};
+    held_imbalance = nullptr;
+    assembler.begin_step(now);
+    set_constraints(now);
+    return assemble_without_increment();
+  }
+
+
+
+  template <int dim>
   typename Equilibrium<dim>::Imbalance
   Equilibrium<dim>::imbalance(const double t, double &relative)
   {
     const Interval now{t, t};
+    held_imbalance = nullptr;
     assembler.begin_step(now);
     set_constraints(now);
     const AssemblyResult result = assemble_without_increment();
@@ -318,12 +354,16 @@ namespace alveolus
       }
 
     unsigned int n_before_augmentation = 0;
+    double       last_norm             = 0.;
     for (;;)
       {
         const double norm  = free_norm(residual_vector);
         const double scale = std::max(result.force_scale, 1e-300);
         report.residuals.push_back(norm / scale);
-        report.energy = result.energy;
+        report.energy       = result.energy;
+        report.energy_moved = result.energy_moved;
+        report.dissipation  = result.dissipation;
+        report.force_scale  = result.force_scale;
         if (!std::isfinite(norm))
           return repeat("the residual is not a finite number", "Newton");
         if (!lift && (norm <= parameters.tolerance * result.force_scale ||
@@ -355,6 +395,14 @@ namespace alveolus
         residual_vector *= -1.;
         if (lift)
           residual_vector += lifted;
+        else if (auto *adaptive =
+                   dynamic_cast<AdaptiveTolerance *>(system.get()))
+          adaptive->ask(
+            linear_tolerance(norm,
+                             last_norm,
+                             std::max(parameters.tolerance * result.force_scale,
+                                      parameters.absolute_tolerance)));
+        last_norm = lift ? 0. : norm;
         {
           TimerOutput::Scope scope(timer, "linear solver");
           try

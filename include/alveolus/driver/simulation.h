@@ -4,7 +4,9 @@
 
 #include <alveolus/base/whole_file.h>
 #include <alveolus/driver/bone_mass.h>
+#include <alveolus/driver/energy_books.h>
 #include <alveolus/driver/model.h>
+#include <alveolus/driver/state_check.h>
 #include <alveolus/io/checkpoint.h>
 #include <alveolus/io/field_writer.h>
 #include <alveolus/io/history_file.h>
@@ -88,10 +90,17 @@ namespace alveolus
       unsigned int max_iterations_of_a_step = 0;
       double       smallest_quality         = 1.;
       double       largest_transfer_error   = 0.;
+      unsigned int most_beyond_bounds       = 0; ///< points, of a step
     };
 
     Verdict
     attempt(const Interval &interval);
+    /**
+     * Count, and say in the log, what of the committed history is beyond its
+     * bounds. @throws RunError if it is garbage
+     */
+    void
+    check_committed(const Model<dim> &checked);
     Verdict
     judge_corners(const Model<dim> &candidate) const;
     void
@@ -230,7 +239,9 @@ namespace alveolus
     std::unique_ptr<RemeshPlan>  remesh_plan;
     std::unique_ptr<HistoryFile> remesh_file;
     // Present only where some region has a density:
-    std::unique_ptr<BoneMass<dim>> bone_mass;
+    std::unique_ptr<BoneMass<dim>>    bone_mass;
+    StateFindings                     findings;     ///< of the present history
+    std::unique_ptr<EnergyBooks<dim>> energy_books; ///< null if not asked for
     // Present only where some region has a reference map:
     std::unique_ptr<ReferenceOutline<dim>> reference_outline;
     std::vector<double> reference_volumes; ///< of the undeformed regions

@@ -32,6 +32,12 @@ namespace alveolus
 
     /** Stored energy per volume of the undeformed material [MPa]. */
     double energy = 0.;
+
+    /**
+     * Plastic work lost in the increment, per volume of the undeformed material
+     * [MPa]. The caller sets it to zero; laws without dissipation leave it.
+     */
+    double dissipation = 0.;
   };
 
   /**

@@ -28,6 +28,7 @@ namespace alveolus
       bool                after_failure         = true;
       unsigned int        max_remeshes          = 1000;
       unsigned int        max_halvings          = 8;
+      double              uncovered_part        = 0.02;
 
       void
       declare(dealii::ParameterHandler &prm);

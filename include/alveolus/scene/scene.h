@@ -89,6 +89,7 @@ namespace alveolus
 
     std::string inverted_corners = "stop";
     double      minimum_quality  = -1.;
+    bool        energy_balance   = true;
     double      warn_quality     = 0.3;
 
     StepControl::Parameters time;

@@ -24,6 +24,9 @@ namespace alveolus
     unsigned int        n_direct_instead    = 0;  ///< failed iterations
     unsigned int        n_augmentations     = 0;  ///< of multipliers
     double              energy              = 0.; ///< stored [mJ (per mm)]
+    double energy_moved = 0.; ///< on the moved mesh, see CellKernel
+    double dissipation  = 0.; ///< plastic work of the increment [mJ (per mm)]
+    double force_scale  = 0.; ///< see AssemblyResult
     /** L1 norm of the residual before the step over the internal forces. */
     double imbalance = 0.;
   };
@@ -88,6 +91,21 @@ namespace alveolus
     Imbalance
     imbalance(const double t, double &relative);
 
+    /**
+     * Assemble the forces of the committed state under the loads of its time:
+     * where the work of a step begins. They are in assembly().internal_forces
+     * and residual() until the next solve().
+     */
+    AssemblyResult
+    assemble_committed();
+
+    /** Whether a condition prescribes this dof, or it hangs. */
+    bool
+    is_held(const dealii::types::global_dof_index dof) const
+    {
+      return held.is_constrained(dof);
+    }
+
     NodalVector increment; ///< du [mm], ghosted
 
     /** Internal minus external forces at the solution: reactions [N (per mm)].
@@ -102,6 +120,13 @@ namespace alveolus
     assembly() const
     {
       return assembler;
+    }
+
+    /** See MechanicsAssembler. */
+    void
+    keep_moved_weights()
+    {
+      assembler.keep_moved_weights();
     }
 
     bool
