@@ -311,8 +311,6 @@ TEST(Resume, AgainAndAgain)
 // A checkpoint between two rezonings remembers where rules count from.
 TEST(Resume, RezonedEveryThirdStep)
 {
-  if (!alone())
-    GTEST_SKIP() << "tried on one process only";
   const Sets sets = academic + Sets{"Time/End=7", "Rezoning/Every steps=3"};
   const std::string full = new_folder("full");
   EXPECT_TRUE(start<2>("academic", sets, full));
