@@ -35,6 +35,10 @@ main(int argc, char **argv)
     "accept-changes",
     po::bool_switch(&options.accept),
     "resume although settings have changed")(
+    "allow-scripts",
+    po::bool_switch(&options.allow_scripts),
+    "let gmsh run a script (.geo) that a scene names as its mesh file; it can "
+    "start programs")(
     "validate",
     po::bool_switch(&options.validate),
     "parse, mesh, check, say what is modelled and what not; solve nothing")(
@@ -69,7 +73,9 @@ main(int argc, char **argv)
     {
       std::cout << all
                 << "\nExit codes: 0 completed, 1 stopped early (results and "
-                   "reason on disk), 2 bad input or usage.\n";
+                   "reason on disk), 2 bad input or usage.\n"
+                   "The environment variable ALVEOLUS_MESHER names the program "
+                   "gmsh, if it is not found.\n";
       return 0;
     }
   if (given.count("version") > 0)

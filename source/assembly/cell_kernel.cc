@@ -162,7 +162,7 @@ namespace alveolus
                 coefficients);
       }
 
-    energy = 0.;
+    energy = energy_moved = dissipation = 0.;
     for (unsigned int q = 0; q < points.size(); ++q)
       {
         Point        &point = points[q];
@@ -178,6 +178,7 @@ namespace alveolus
               return Status::inverted;
             f_bar *= std::cbrt(point.theta / point.det);
           }
+        point.response.dissipation = 0.;
         region.material->evaluate(f_bar,
                                   old,
                                   history.trial_record(cell, q),
@@ -186,6 +187,8 @@ namespace alveolus
         if (!is_finite(point.response.stress))
           return Status::not_finite;
         energy += point.response.energy * point.weight;
+        energy_moved += point.response.energy * moved_weight(q);
+        dissipation += point.response.dissipation * point.weight;
         point.pressure_integrand =
           trace(point.response.stress) / (3. * point.theta);
       }

@@ -45,9 +45,9 @@ namespace alveolus
     FullMatrix<double>                   matrix;
     Vector<double>                       forces;
     std::vector<types::global_dof_index> dofs;
-    double                               energy = 0.;
-    std::string                          failure;  ///< of the material
-    unsigned int                         slot = 0; ///< of the cell
+    double       energy = 0., energy_moved = 0., dissipation = 0.;
+    std::string  failure;  ///< of the material
+    unsigned int slot = 0; ///< of the cell
   };
 
 
@@ -107,6 +107,17 @@ namespace alveolus
 
   template <int dim>
   void
+  MechanicsAssembler<dim>::keep_moved_weights()
+  {
+    moved_weights.resize(
+      state.configuration.mesh.triangulation->n_active_cells() *
+      geometry.n_points);
+  }
+
+
+
+  template <int dim>
+  void
   MechanicsAssembler<dim>::begin_step(const Interval &interval)
   {
     geometry.update();
@@ -154,7 +165,14 @@ namespace alveolus
                                       target.system != nullptr ? &copy.matrix
                                                                : nullptr,
                                       copy.forces);
-            copy.energy = scratch.kernel.energy;
+            copy.energy       = scratch.kernel.energy;
+            copy.energy_moved = scratch.kernel.energy_moved;
+            copy.dissipation  = scratch.kernel.dissipation;
+            if (!moved_weights.empty() &&
+                copy.status == CellKernel<dim>::Status::good)
+              for (unsigned int q = 0; q < geometry.n_points; ++q)
+                moved_weights[index * geometry.n_points + q] =
+                  scratch.kernel.moved_weight(q);
           }
         catch (const RunError &error)
           {
@@ -185,6 +203,8 @@ namespace alveolus
           result.force_scale += std::abs(copy.forces[i]);
         }
       result.energy += copy.energy;
+      result.energy_moved += copy.energy_moved;
+      result.dissipation += copy.dissipation;
       if (target.system == nullptr)
         return;
       target.system->add_cell(copy.slot, copy.matrix, copy.dofs);
@@ -208,8 +228,11 @@ namespace alveolus
       target.system->compress();
 
     const MPI_Comm communicator = configuration.communicator();
-    result.force_scale = Utilities::MPI::sum(result.force_scale, communicator);
-    result.energy      = Utilities::MPI::sum(result.energy, communicator);
+    for (double *sum : {&result.force_scale,
+                        &result.energy,
+                        &result.energy_moved,
+                        &result.dissipation})
+      *sum = Utilities::MPI::sum(*sum, communicator);
     // The message of the lowest process that has one is everybody's.
     const unsigned int me = Utilities::MPI::this_mpi_process(communicator);
     const unsigned int n  = Utilities::MPI::n_mpi_processes(communicator);

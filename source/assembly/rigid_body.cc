@@ -220,14 +220,15 @@ namespace alveolus
     smallest_strain = std::numeric_limits<double>::max();
     largest_strain  = std::numeric_limits<double>::lowest();
     largest_shear   = 0.;
+    stored          = 0.;
     for (unsigned int f = 0; f < faces.size(); ++f)
       {
         forces = 0.;
         matrix = 0.;
         for (unsigned int q = 0; q < faces[f].points.size(); ++q)
           {
-            const FacePoint &point = faces[f].points[q];
-            Tensor<1, 3>     old, du, normal = turn * point.normal;
+            FacePoint   &point = faces[f].points[q];
+            Tensor<1, 3> old, du, normal = turn * point.normal;
             for (unsigned int d = 0; d < dim; ++d)
               old[d] = jumps->old_record(f, q)[d];
             for (unsigned int i = 0; i < n_dofs; ++i)
@@ -241,6 +242,8 @@ namespace alveolus
             Tensor<2, 3> tangent;
             double       energy = 0.;
             law->evaluate(jump, normal, traction, tangent, energy);
+            point.traction = traction;
+            stored += energy * point.weight;
             const double strain = law->normal_strain(jump, normal);
             smallest_strain     = std::min(smallest_strain, strain);
             largest_strain      = std::max(largest_strain, strain);
@@ -276,6 +279,99 @@ namespace alveolus
   {
     if (jumps)
       jumps->commit();
+  }
+
+
+
+  template <int dim>
+  void
+  RigidBody<dim>::begin_work()
+  {
+    tractions_before.clear();
+    for (const auto &face : faces)
+      for (const auto &point : face.points)
+        tractions_before.push_back(point.traction);
+    stored_before = stored;
+  }
+
+
+
+  template <int dim>
+  LayerWork
+  RigidBody<dim>::layer_work(const State<dim>  &state,
+                             const NodalVector &increment) const
+  {
+    // The body's forces act where the boundary is (see add_forces()): their
+    // power is that of force and moment about the moved centre, at both ends.
+    LayerWork          work;
+    const auto        &fe     = state.configuration.fe;
+    auto               before = tractions_before.begin();
+    const Tensor<1, 3> start  = displacement(step.begin);
+    const Tensor<1, 3> shift  = displacement(step.end) - start;
+    const Tensor<1, 3> turn =
+      (angle->value(Point<1>(step.end)) - angle->value(Point<1>(step.begin))) *
+      numbers::PI / 180. *
+      (dim == 2 ? Tensor<1, 3>(Point<3>(0., 0., 1.)) : axis);
+    for (const auto &face : faces)
+      for (const auto &point : face.points)
+        {
+          Tensor<1, 3> du, arm;
+          for (unsigned int i = 0; i < face.dofs.size(); ++i)
+            du[fe.system_to_component_index(i).first] +=
+              point.shapes[i] * increment(face.dofs[i]);
+          for (unsigned int d = 0; d < dim; ++d)
+            arm[d] = point.x[d];
+          arm -= centre + start;
+          const Tensor<1, 3> t_0 = 0.5 * point.weight * *before++;
+          const Tensor<1, 3> t_1 = 0.5 * point.weight * point.traction;
+          work.by_body +=
+            t_0 * (shift + cross_product_3d(turn, arm)) +
+            t_1 * (shift + cross_product_3d(turn, arm + du - shift));
+          work.on_boundary += (t_0 + t_1) * du;
+        }
+    work.stored_before = stored_before;
+    work.stored_after  = stored;
+    return work;
+  }
+
+
+
+  template <int dim>
+  double
+  RigidBody<dim>::stored_energy(const State<dim> &state) const
+  {
+    if (law == nullptr)
+      return 0.;
+    const auto       &configuration = state.configuration;
+    FEFaceValues<dim> fe_values(configuration.mapping(),
+                                configuration.fe,
+                                QGauss<dim - 1>(configuration.degree + 1),
+                                update_JxW_values | update_normal_vectors);
+    double            sum = 0.;
+    for (unsigned int f = 0; f < jumps->faces().size(); ++f)
+      {
+        const auto &face = jumps->faces()[f];
+        fe_values.reinit(typename DoFHandler<dim>::active_cell_iterator(
+                           configuration.mesh.triangulation.get(),
+                           face.cell->level(),
+                           face.cell->index(),
+                           &configuration.dof_handler),
+                         face.face_no);
+        for (const unsigned int q : fe_values.quadrature_point_indices())
+          {
+            Tensor<1, 3> jump, normal, traction;
+            Tensor<2, 3> tangent;
+            double       energy = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                jump[d]   = jumps->old_record(f, q)[d];
+                normal[d] = fe_values.normal_vector(q)[d];
+              }
+            law->evaluate(jump, normal, traction, tangent, energy);
+            sum += energy * fe_values.JxW(q);
+          }
+      }
+    return sum;
   }
 
 

@@ -33,6 +33,15 @@ namespace alveolus
   void
   StepGeometry<dim>::update()
   {
+    // A rejected step and the books of energy come back to the same mesh.
+    const NodalVector  &d = configuration.mesh_displacement();
+    std::vector<double> present;
+    present.reserve(configuration.locally_relevant.n_elements());
+    for (const auto i : configuration.locally_relevant)
+      present.push_back(d(i));
+    if (present == known)
+      return;
+    known.clear();
     // The mesh is isoparametric: Jacobians and gradients come from the
     // positions of the nodes, as FEValues with the Eulerian mapping would get
     // them, but without its tables for each cell.
@@ -77,6 +86,7 @@ namespace alveolus
                 all_gradients[(first + q) * n_nodes + a] = N[a] * inverse;
             }
         }
+    known = std::move(present);
   }
 
 

@@ -14,6 +14,19 @@ namespace alveolus
 
   namespace
   {
+    /** A B of tensors that commute. */
+    inline SymmetricTensor<2, 3>
+    symmetric_product(const SymmetricTensor<2, 3> &A,
+                      const SymmetricTensor<2, 3> &B)
+    {
+      SymmetricTensor<2, 3> result;
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = i; j < 3; ++j)
+          result[i][j] =
+            A[i][0] * B[0][j] + A[i][1] * B[1][j] + A[i][2] * B[2][j];
+      return result;
+    }
+
     bool
     is_plane(const SymmetricTensor<2, 3> &tensor)
     {
@@ -184,7 +197,29 @@ namespace alveolus
             return result;
           }
       }
-    return tensor_function(tensor, [](const double x) { return std::exp(x); });
+    // Taylor series after halving: elastic strains are small, so that a few
+    // products do what an eigen-decomposition would take far longer for.
+    double largest = tensor.norm();
+    if (!(largest < 100.)) // or not a number
+      return tensor_function(tensor,
+                             [](const double x) { return std::exp(x); });
+    unsigned int halved = 0;
+    for (; largest > 0.25; ++halved)
+      largest *= 0.5;
+    const SymmetricTensor<2, 3> a    = tensor / std::pow(2., halved);
+    SymmetricTensor<2, 3>       term = a;
+    SymmetricTensor<2, 3>       rest = a; // of exp(a) - I
+    double                      size = largest;
+    for (unsigned int n = 2; size > 1e-18; ++n)
+      {
+        term = symmetric_product(a, term) / n;
+        rest += term;
+        size *= largest / n;
+      }
+    // exp(2 a) - I = (exp(a) - I)^2 + 2 (exp(a) - I)
+    for (unsigned int n = 0; n < halved; ++n)
+      rest = symmetric_product(rest, rest) + 2. * rest;
+    return rest + dealii::unit_symmetric_tensor<3>();
   }
 
 

@@ -12,6 +12,27 @@
 
 namespace alveolus
 {
+  void
+  require_plain(const std::string &name, const bool folder)
+  {
+    namespace fs = std::filesystem;
+    std::error_code     ignored;
+    const fs::file_type type = fs::symlink_status(name, ignored).type();
+    if (type == fs::file_type::not_found || type == fs::file_type::none ||
+        type == (folder ? fs::file_type::directory : fs::file_type::regular))
+      return;
+    const std::string wanted = folder ? "folder" : "file";
+    throw InputError(name,
+                     (type == fs::file_type::symlink     ? "is a link"
+                      : type == fs::file_type::directory ? "is a folder"
+                                                         : "is no " + wanted) +
+                       ", where a " + wanted + " is to be written",
+                     "remove it, or choose another output folder by "
+                     "`--output`");
+  }
+
+
+
   int
   bring_to_disk(const std::string &name)
   {
@@ -30,6 +51,8 @@ namespace alveolus
     : name(name)
     , temporary(name + unfinished)
   {
+    // Never through a link of that name to some other file
+    std::remove(temporary.c_str());
     errno = 0;
     file.open(temporary, std::ios::binary | std::ios::trunc);
     if (!file)

@@ -128,7 +128,8 @@ namespace alveolus
                                   initial,
                                   by_remodelling,
                                   by_volume_change,
-                                  through_boundary});
+                                  through_boundary,
+                                  by_remeshing});
     // Volumes could be computed from the positions, but not to the last bit:
     // those of a Lagrangian step come from the sum of positions and increment.
     fields.save(volumes, begin_of_cells(), "bone mass/volumes", blocks);
@@ -142,13 +143,14 @@ namespace alveolus
                       const BlockFile           &blocks)
   {
     const auto &books = blocks.numbers("bone mass/books");
-    if (books.size() != 5)
-      blocks.refuse("bone mass/books", "does not hold 5 numbers");
+    if (books.size() != 6)
+      blocks.refuse("bone mass/books", "does not hold 6 numbers");
     mass             = books[0];
     initial          = books[1];
     by_remodelling   = books[2];
     by_volume_change = books[3];
     through_boundary = books[4];
+    by_remeshing     = books[5];
     fields.load(blocks, "bone mass/volumes", begin_of_cells(), volumes);
   }
 

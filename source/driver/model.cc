@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <alveolus/base/errors.h>
+#include <alveolus/base/problems.h>
 #include <alveolus/driver/messages.h>
 #include <alveolus/driver/model.h>
 
@@ -9,24 +9,6 @@
 namespace alveolus
 {
   using namespace dealii;
-
-  namespace
-  {
-    /** One error that tells all problems, one a line. */
-    InputError
-    all_of(const std::vector<std::string> &problems)
-    {
-      std::string text = problems[0];
-      for (unsigned int i = 1; i < problems.size(); ++i)
-        text += "\n" + problems[i];
-      const std::size_t colon = text.find(": ");
-      return colon == std::string::npos
-               ? InputError("scene", text, "")
-               : InputError(text.substr(0, colon), text.substr(colon + 2), "");
-    }
-  } // namespace
-
-
 
   template <int dim>
   Model<dim>::Model(
@@ -41,20 +23,10 @@ namespace alveolus
     if (positions)
       state->configuration.set_positions(positions(state->configuration));
     // All problems at once, not one for each run
-    std::vector<std::string> problems;
-    const auto               collect = [&problems](const auto &action) {
-      try
-        {
-          action();
-        }
-      catch (const InputError &error)
-        {
-          problems.push_back(error.what());
-        }
-    };
+    Problems problems;
     for (auto &condition : scene->conditions)
       {
-        collect([&]() {
+        problems.collect([&]() {
           condition.object->choose_interface_law(scene->interface_laws,
                                                  condition.where);
           condition.object->attach(*state, condition.where);
@@ -62,19 +34,18 @@ namespace alveolus
         conditions.push_back(std::move(condition.object));
       }
     for (auto &recorder : scene->recorders)
-      collect([&]() {
+      problems.collect([&]() {
         recorder.object->offer_regions(regions);
         recorder.object->attach(*state, recorder.where);
       });
-    if (!problems.empty())
-      throw all_of(problems);
+    if (!scene->rezoning_rules.empty())
+      problems.collect([&]() { make_rezoning(); });
+    problems.throw_if_any();
 
     equilibrium = std::make_unique<Equilibrium<dim>>(
       *state, regions, conditions, scene->solver, timer);
     staggered_step = std::make_unique<StaggeredStep<dim>>(
       *state, *equilibrium, remodelling, scene->coupling, timer);
-    if (!scene->rezoning_rules.empty())
-      make_rezoning();
 
     if (rezoner || scene->remesher)
       {
@@ -103,23 +74,27 @@ namespace alveolus
   {
     std::map<types::material_id, unsigned int> region_of_material;
     std::vector<HistoryLayout>                 layouts;
+    Problems                                   problems;
     for (unsigned int r = 0; r < scene->regions.size(); ++r)
       {
         const auto &definition = scene->regions[r];
         for (const auto &name :
              Utilities::split_string_list(definition.on, ','))
-          for (const auto id :
-               mesh.names.region(name,
-                                 "Regions / " + definition.name + " / On"))
-            {
-              const auto entry = region_of_material.emplace(id, r);
-              if (entry.first->second != r)
-                throw InputError("Regions / " + definition.name + " / On",
-                                 "cells of '" + name + "' belong to region '" +
-                                   scene->regions[entry.first->second].name +
-                                   "', too",
-                                 "name each part of the mesh in one region");
-            }
+          problems.collect([&]() {
+            for (const auto id :
+                 mesh.names.region(name,
+                                   "Regions / " + definition.name + " / On"))
+              {
+                const auto entry = region_of_material.emplace(id, r);
+                if (entry.first->second != r)
+                  throw InputError("Regions / " + definition.name + " / On",
+                                   "cells of '" + name +
+                                     "' belong to region '" +
+                                     scene->regions[entry.first->second].name +
+                                     "', too",
+                                   "name each part of the mesh in one region");
+              }
+          });
         const Material &material =
           *scene->materials[scene->material_of(definition)].object;
         regions.push_back({definition.name,
@@ -133,6 +108,7 @@ namespace alveolus
                                       dynamic_cast<const RemodelledBone *>(
                                         &material)});
       }
+    problems.throw_if_any();
     state = std::make_unique<State<dim>>(mesh,
                                          scene->degree,
                                          region_of_material,

@@ -36,6 +36,7 @@ namespace alveolus
       Log        log(Utilities::MPI::this_mpi_process(communicator) == 0,
               options.quiet);
       const auto scene = std::make_shared<Scene<dim>>(text);
+      scene->mesh_source->allow_scripts(options.allow_scripts);
       if (!options.output.empty())
         scene->output_directory = options.output;
       else if (resumed)

@@ -59,6 +59,8 @@ namespace alveolus
       }
     if (BoneMass<dim>::present(*model->state))
       bone_mass = std::make_unique<BoneMass<dim>>(*model->state);
+    if (scene.energy_balance)
+      energy_books = std::make_unique<EnergyBooks<dim>>(*model);
     begin_reference();
     if (this->resumed)
       {
@@ -73,6 +75,7 @@ namespace alveolus
                          number(quality.where[0]) + ", " +
                          number(quality.where[1]) + ") mm");
     totals.smallest_quality = quality.smallest_scaled_jacobian;
+    warn_of_quality();
 
     // Contradictory conditions show in the first step: rather now.
     const Interval first{0., std::min(scene.time.initial_step, scene.time.end)};
@@ -169,7 +172,7 @@ namespace alveolus
             ++totals.rejected;
             log.note("t = " + number(interval.end, 8) + " T rejected (step " +
                      number(dt, 4) + "): " + verdict.reason);
-            if (step_control.rejected(dt))
+            if (step_control.rejected(dt, verdict.cause))
               continue;
             if (remesh_plan && remesh_plan->after_failure(time) &&
                 remesh("no step is short enough", false))
@@ -188,15 +191,15 @@ namespace alveolus
         state_is_whole          = false;
         commit(interval);
         const auto conclude = [&]() {
+          choose_next_step(dt);
           write_history();
-          step_control.accepted(dt, mechanics_report.n_iterations);
           rejected_attempts = 0;
           state_is_whole    = true;
         };
         if (model->rezoner)
           try
             {
-              rezone(*model, start, true);
+              rezone_if_due(start);
             }
           catch (const RunError &)
             {
@@ -274,12 +277,53 @@ namespace alveolus
   {
     mechanics_report   = EquilibriumReport();
     remodelling_report = RemodellingSummary();
-    Verdict verdict    = model->staggered_step->solve(interval,
+    if (energy_books)
+      energy_books->begin(*model);
+    Verdict verdict = model->staggered_step->solve(interval,
                                                    mechanics_report,
                                                    remodelling_report);
     if (!verdict.repeats())
       verdict.combine(judge_corners(*model));
+    if (!verdict.repeats())
+      {
+        TimerOutput::Scope scope(timer, "monitor");
+        findings = check_state(*model->state, model->regions, true);
+        if (!findings.garbage.empty())
+          verdict.combine(
+            {Verdict::Kind::repeat, findings.garbage, "history invalid"});
+      }
+    if (!verdict.repeats() && energy_books)
+      {
+        // Newton's tolerance is all that may be missing, unless something is
+        // wrong with the forces themselves.
+        const double error =
+          energy_books->check_resultants(*model, mechanics_report.force_scale);
+        const double bound =
+          std::max({1e-6,
+                    100. * scene.solver.tolerance,
+                    100. * scene.solver.absolute_tolerance /
+                      std::max(mechanics_report.force_scale, 1e-300)});
+        if (!(error <= bound))
+          verdict.combine({Verdict::Kind::repeat,
+                           "forces and reactions have a resultant of " +
+                             number(error) + " of the internal forces",
+                           "resultants"});
+      }
     return verdict;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::check_committed(const Model<dim> &checked)
+  {
+    TimerOutput::Scope scope(timer, "monitor");
+    findings = check_state(*checked.state, checked.regions, false);
+    if (!findings.garbage.empty())
+      throw RunError("t = " + number(checked.state->time, 8) + " T",
+                     "after the transfer, " + findings.garbage,
+                     "go on from the last checkpoint with smaller steps");
   }
 
 
@@ -288,6 +332,7 @@ namespace alveolus
   Verdict
   Simulation<dim>::judge_corners(const Model<dim> &judged) const
   {
+    // With "report" a mesh may go through anything.
     if (scene.inverted_corners == "report")
       return Verdict{};
     const auto &configuration = judged.state->configuration;
@@ -297,12 +342,12 @@ namespace alveolus
     x.update_ghost_values();
     const QualitySummary<dim> candidate = mesh_quality(configuration, x);
     if (candidate.n_inverted_corners == 0)
-      return Verdict{};
+      return &judged == model.get() ? judge_quality(candidate) : Verdict{};
     std::ostringstream reason;
     reason << candidate.n_inverted_corners
            << " corner(s) of elements turned inside out, the worst near ("
            << candidate.where << ") mm";
-    return {Verdict::Kind::repeat, reason.str()};
+    return {Verdict::Kind::repeat, reason.str(), "inverted corners"};
   }
 
 
@@ -321,9 +366,13 @@ namespace alveolus
         x.update_ghost_values();
         bone_mass->book_step(state, x);
       }
+    if (energy_books)
+      energy_books->book_step(*model, mechanics_report, remodelling_report);
     state.accept(increment);
     for (auto &condition : model->conditions)
       condition->commit();
+    if (energy_books)
+      energy_books->book_commit(*model);
     state.time      = interval.end;
     state.last_step = interval.end - interval.begin;
     ++totals.steps;
@@ -414,8 +463,15 @@ namespace alveolus
         totals.limited +=
           report.n_limited + rezoned_model.make_history_admissible();
         totals.subcycles += report.n_subcycles;
+        if (booked)
+          {
+            swept_fraction = report.swept_fraction;
+            check_committed(rezoned_model);
+          }
         if (booked && bone_mass)
           bone_mass->book_transfer(state, report);
+        if (booked && energy_books)
+          energy_books->book_transfer(rezoned_model);
         if (booked && reference_outline)
           note_reference_volumes();
       }

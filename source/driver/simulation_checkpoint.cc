@@ -94,6 +94,8 @@ namespace alveolus
       remesh_plan->save(blocks);
     if (bone_mass)
       bone_mass->save(*portable, blocks);
+    if (energy_books)
+      energy_books->save(blocks);
     if (reference_outline)
       {
         reference_outline->save(blocks);
@@ -110,9 +112,21 @@ namespace alveolus
                                    totals.unconverged_rezonings,
                                    totals.max_iterations_of_a_step,
                                    rejected_attempts});
+    blocks.put("totals/bounds",
+               BlockFile::Integers{totals.most_beyond_bounds,
+                                   findings.n_beyond_bounds});
     blocks.put("extremes",
                BlockFile::Numbers{totals.smallest_quality,
                                   totals.largest_transfer_error});
+    blocks.put("totals/further",
+               BlockFile::Integers{totals.skipped_rezonings,
+                                   totals.quality_warnings,
+                                   quality_is_low ? 1u : 0u});
+    blocks.put("last step/limits",
+               BlockFile::Numbers{swept_fraction,
+                                  remodelling_report.largest_density_change});
+    if (rezoning_start)
+      portable->save(*rezoning_start, "rezoning/start", blocks);
     blocks.put("last step/residuals", mechanics_report.residuals);
     blocks.put("last step/mechanics",
                BlockFile::Numbers{mechanics_report.energy,
@@ -189,6 +203,8 @@ namespace alveolus
       remesh_plan->load(blocks);
     if (bone_mass)
       bone_mass->load(*portable, blocks);
+    if (energy_books && blocks.has("energy books"))
+      energy_books->load(blocks);
 
     const auto &t = blocks.integers("totals");
     if (t.size() != 9)
@@ -202,11 +218,41 @@ namespace alveolus
     totals.unconverged_rezonings    = t[6];
     totals.max_iterations_of_a_step = t[7];
     rejected_attempts               = t[8];
-    const auto &extremes            = blocks.numbers("extremes");
-    const auto &mechanics           = blocks.numbers("last step/mechanics");
-    const auto &counts              = blocks.integers("last step/counts");
-    const auto &when                = blocks.numbers("fields/when");
-    const auto &seconds             = blocks.numbers("seconds/phases");
+    // Not in checkpoints of earlier versions
+    if (blocks.has("totals/bounds"))
+      {
+        const auto &bounds = blocks.integers("totals/bounds");
+        if (bounds.size() != 2)
+          blocks.refuse("totals/bounds", "does not hold 2 integers");
+        totals.most_beyond_bounds = bounds[0];
+        findings.n_beyond_bounds  = bounds[1];
+      }
+    if (blocks.has("totals/further"))
+      {
+        const auto &further = blocks.integers("totals/further");
+        const auto &limits  = blocks.numbers("last step/limits");
+        if (further.size() != 3)
+          blocks.refuse("totals/further", "does not hold 3 integers");
+        if (limits.size() != 2)
+          blocks.refuse("last step/limits", "does not hold 2 numbers");
+        totals.skipped_rezonings                  = further[0];
+        totals.quality_warnings                   = further[1];
+        quality_is_low                            = further[2] != 0;
+        swept_fraction                            = limits[0];
+        remodelling_report.largest_density_change = limits[1];
+      }
+    if (blocks.has("rezoning/start"))
+      {
+        rezoning_start =
+          std::make_unique<NodalVector>(state.configuration.make_vector());
+        portable->load(blocks, "rezoning/start", *rezoning_start);
+        rezoning_start->update_ghost_values();
+      }
+    const auto &extremes  = blocks.numbers("extremes");
+    const auto &mechanics = blocks.numbers("last step/mechanics");
+    const auto &counts    = blocks.integers("last step/counts");
+    const auto &when      = blocks.numbers("fields/when");
+    const auto &seconds   = blocks.numbers("seconds/phases");
     if (extremes.size() != 2)
       blocks.refuse("extremes", "does not hold 2 numbers");
     if (mechanics.size() != 2)

@@ -40,7 +40,15 @@ namespace alveolus
       quality = model->quality();
       totals.smallest_quality =
         std::min(totals.smallest_quality, quality.smallest_scaled_jacobian);
+      warn_of_quality();
     }
+    if (findings.n_beyond_bounds > totals.most_beyond_bounds)
+      {
+        totals.most_beyond_bounds = findings.n_beyond_bounds;
+        log.note(std::to_string(findings.n_beyond_bounds) +
+                 " point(s) beyond the bounds of their history, worst " +
+                 findings.worst);
+      }
     last_row = history_row();
     TimerOutput::Scope scope(timer, "output");
     on_first_process<RunError>(communicator,
@@ -108,6 +116,10 @@ namespace alveolus
       row.emplace_back("linear iterations",
                        mechanics_report.n_linear_iterations);
     row.emplace_back("rejected attempts", rejected_attempts);
+    unsigned int n_limited = 0;
+    for (const auto &entry : step_control.limited())
+      n_limited += entry.second;
+    row.emplace_back("limited steps", n_limited);
     row.emplace_back("smallest scaled Jacobian",
                      quality.smallest_scaled_jacobian);
     row.emplace_back("inverted corners", quality.n_inverted_corners);
@@ -121,15 +133,23 @@ namespace alveolus
                          bone_mass->by_volume_change);
         row.emplace_back("mass through boundaries [mg]",
                          bone_mass->through_boundary);
+        if (scene.remesher)
+          row.emplace_back("mass by remeshing [mg]", bone_mass->by_remeshing);
         row.emplace_back("least density [g/cc]", density.first);
         row.emplace_back("greatest density [g/cc]", density.second);
+        row.emplace_back("density change [g/cc]",
+                         remodelling_report.largest_density_change);
         row.emplace_back("points at least density",
                          remodelling_report.n_at_lower_bound);
         row.emplace_back("points at greatest density",
                          remodelling_report.n_at_upper_bound);
       }
     if (model->rezoner)
-      row.emplace_back("limited values", totals.limited);
+      {
+        row.emplace_back("swept fraction", swept_fraction);
+        row.emplace_back("limited values", totals.limited);
+      }
+    row.emplace_back("points beyond bounds", findings.n_beyond_bounds);
     if (remesh_plan)
       row.emplace_back("remeshes", remesh_plan->n_remeshes());
     if (reference_outline)
@@ -142,6 +162,9 @@ namespace alveolus
                            errors[i]);
       }
     row.emplace_back("stored energy [mJ]", mechanics_report.energy);
+    if (energy_books)
+      for (const auto &value : energy_books->record(*model))
+        row.push_back(value);
     const auto seconds = phase_seconds();
     for (const char *const phase : phases)
       row.emplace_back(std::string(phase) + " [s]", seconds.at(phase));
@@ -224,19 +247,26 @@ namespace alveolus
     summary["time"]              = model->state->time;
     summary["steps"]             = totals.steps;
     summary["rejected attempts"] = totals.rejected;
+    for (const auto &[cause, n] : step_control.rejections())
+      summary["rejected attempts by cause"][cause] = n;
+    for (const auto &[cause, n] : step_control.limited())
+      summary["steps limited by"][cause] = n;
+    summary["quality warnings"]  = totals.quality_warnings;
     summary["Newton iterations"] = totals.iterations;
     summary["Newton iterations per step"] =
       totals.steps > 0 ? static_cast<double>(totals.iterations) / totals.steps
                        : 0.;
     summary["most Newton iterations of a step"] =
       totals.max_iterations_of_a_step;
-    summary["last residual history"]    = mechanics_report.residuals;
-    summary["smallest scaled Jacobian"] = totals.smallest_quality;
-    summary["inverted corners"]         = quality.n_inverted_corners;
-    summary["limited values"]           = totals.limited;
+    summary["last residual history"]     = mechanics_report.residuals;
+    summary["smallest scaled Jacobian"]  = totals.smallest_quality;
+    summary["inverted corners"]          = quality.n_inverted_corners;
+    summary["limited values"]            = totals.limited;
+    summary["most points beyond bounds"] = totals.most_beyond_bounds;
     if (model->rezoner)
       {
         summary["rezonings cut back"]      = totals.cut_back;
+        summary["steps not rezoned"]       = totals.skipped_rezonings;
         summary["rezonings not converged"] = totals.unconverged_rezonings;
         summary["transfer sub-cycles"]     = totals.subcycles;
       }
@@ -249,8 +279,13 @@ namespace alveolus
         summary["mass by remodelling [mg]"]     = bone_mass->by_remodelling;
         summary["mass by volume change [mg]"]   = bone_mass->by_volume_change;
         summary["mass through boundaries [mg]"] = bone_mass->through_boundary;
-        summary["bone mass balance"]            = bone_mass->balance();
+        if (scene.remesher)
+          summary["mass by remeshing [mg]"] = bone_mass->by_remeshing;
+        summary["bone mass balance"] = bone_mass->balance();
       }
+    if (energy_books)
+      for (const auto &[name, value] : energy_books->totals())
+        summary["energy"][name] = value;
     summary["cells"]    = model->mesh.triangulation->n_global_active_cells();
     summary["unknowns"] = model->state->configuration.dof_handler.n_dofs();
     summary["history [bytes]"]  = history_bytes;
@@ -269,9 +304,11 @@ namespace alveolus
     summary["threads"]    = MultithreadInfo::n_threads();
     summary["versions"]["alveolus"] = ALVEOLUS_VERSION;
     summary["versions"]["deal.II"]  = DEAL_II_PACKAGE_VERSION;
+    // Whatever bytes a title or a message holds
+    const auto quiet = nlohmann::ordered_json::error_handler_t::replace;
     on_first_process<RunError>(communicator, [&]() {
       write_text_file(scene.output_directory + "/summary.json",
-                      summary.dump(2) + "\n");
+                      summary.dump(2, ' ', false, quiet) + "\n");
     });
     if (completed)
       log.say("Completed in " + number(wall_time, 4) +

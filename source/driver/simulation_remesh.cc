@@ -43,9 +43,13 @@ namespace alveolus
     Remeshed best;
     if (!candidates.empty())
       {
+        typename OverlapTransfer<dim>::Limits limits;
+        limits.uncovered = scene.remesh_plan.uncovered_part;
         const OverlapTransfer<dim> overlap(old.configuration,
                                            old.history,
-                                           scene.transfer_scheme);
+                                           scene.transfer_scheme,
+                                           "density",
+                                           limits);
         for (auto &candidate : candidates)
           {
             Remeshed tried;
@@ -75,6 +79,19 @@ namespace alveolus
               break;
           }
       }
+    const double reached =
+      best.model ? best.after.smallest_scaled_jacobian : -1.;
+    if (for_quality && reached < scene.remesh_plan.accept_quality &&
+        scene.remesh_plan.if_none_is_acceptable == "stop")
+      throw RunError(
+        place,
+        "the smallest scaled Jacobian is " +
+          number(quality.smallest_scaled_jacobian, 4) + ", and " +
+          (best.model ? "the best new mesh has " + number(reached, 4) +
+                          ", less than `Remeshing / Accept quality`"
+                      : std::string("there is no new mesh")),
+        "resume with other densities, with a lower `Accept quality`, or with "
+        "`If none is acceptable = go on`; or remesh earlier (`Below quality`)");
     // Unless it was quality that asked for it, a remesh may cost a little:
     // where no step is short enough, other elements than the worst ones are the
     // cause
@@ -95,15 +112,20 @@ namespace alveolus
       last_row.empty() ? history_row() : last_row;
     state_is_whole = false;
     portable.reset(); // numbers the old mesh
+    rezoning_start.reset();
     model            = std::move(best.model);
     mechanics_report = best.settling;
     totals.limited += best.transfer.n_limited;
     if (bone_mass)
       {
         auto books = std::make_unique<BoneMass<dim>>(*model->state);
-        books->take_over(*bone_mass);
+        books->take_over(*bone_mass,
+                         best.transfer.content_gained(),
+                         best.transfer.content_after());
         bone_mass = std::move(books);
       }
+    if (energy_books)
+      energy_books->book_remesh(*model);
     remesh_plan->tried(model->state->time,
                        best.after.smallest_scaled_jacobian,
                        true);
@@ -113,7 +135,8 @@ namespace alveolus
             std::to_string(best.settling.n_iterations) +
             " Newton iterations from an imbalance of " +
             number(best.imbalance, 3));
-    quality = best.after;
+    quality  = best.after;
+    findings = check_state(*model->state, model->regions, false);
     if (reference_outline)
       note_reference_volumes();
     if (totals.steps > 0)
@@ -221,6 +244,9 @@ namespace alveolus
 
     clock.restart();
     settle(result);
+    const StateFindings settled = check_state(state, fresh.regions, false);
+    if (!settled.garbage.empty())
+      throw RunError("Remeshing", settled.garbage, "try other densities");
     result.seconds_settling = clock.wall_time();
     result.after            = fresh.quality();
     return result;
@@ -299,6 +325,8 @@ namespace alveolus
     row.emplace_back("Newton iterations", taken.settling.n_iterations);
     row.emplace_back("limited values", taken.transfer.n_limited);
     row.emplace_back("sub-cells not covered", taken.transfer.n_uncovered);
+    row.emplace_back("largest uncovered part",
+                     taken.transfer.largest_uncovered_part());
     row.emplace_back("nodes outside", taken.transfer.n_nodes_outside);
     row.emplace_back("their largest distance [mm]",
                      taken.transfer.largest_distance);

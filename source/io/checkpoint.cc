@@ -117,6 +117,7 @@ namespace alveolus
   void
   CheckpointFolder::clear()
   {
+    require_plain(folder, true);
     std::error_code ignored;
     for (const auto &file : list(folder))
       fs::remove(file.second, ignored);
@@ -128,6 +129,7 @@ namespace alveolus
   void
   CheckpointFolder::go_on_from(const std::string &file)
   {
+    require_plain(folder, true);
     remove_unfinished(folder);
     const auto files = list(folder);
     if (!files.empty())

@@ -33,8 +33,9 @@ namespace alveolus
 
   HistoryFile::HistoryFile(const std::string &file_name)
     : file_name(file_name)
-    , file(file_name)
   {
+    require_plain(file_name);
+    file.open(file_name);
     if (!file)
       cannot_write(file_name);
   }
@@ -45,6 +46,7 @@ namespace alveolus
                            const unsigned int n_rows)
     : file_name(file_name)
   {
+    require_plain(file_name);
     std::uintmax_t length = 0;
     if (n_rows > 0)
       {

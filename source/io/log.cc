@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
+#include <alveolus/base/whole_file.h>
 #include <alveolus/io/log.h>
 
 #include <iostream>
@@ -20,6 +21,7 @@ namespace alveolus
   {
     if (!speaks)
       return;
+    require_plain(file_name);
     file.open(file_name, append ? std::ios::app : std::ios::trunc);
     if (!file)
       throw InputError(file_name,

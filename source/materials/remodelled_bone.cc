@@ -288,6 +288,7 @@ namespace alveolus
                 dev[a] *= theta;
               }
             trial[alpha_offset] += growth * dgamma;
+            response.dissipation = yield.work(dgamma);
           }
       }
     if (volume_offset >= 0)
@@ -361,10 +362,11 @@ namespace alveolus
         double       theta = 1., dyad = 0.;
         if (q > yield.value(0.))
           {
-            const double dalpha = yield.radial_return(q, 3. * lame.mu);
-            const double slope  = yield.slope(dalpha);
-            growth              = dalpha / scale;
-            theta               = 1. - 3. * lame.mu * dalpha / q;
+            const double dalpha  = yield.radial_return(q, 3. * lame.mu);
+            const double slope   = yield.slope(dalpha);
+            growth               = dalpha / scale;
+            response.dissipation = yield.work(dalpha);
+            theta                = 1. - 3. * lame.mu * dalpha / q;
             dyad = (1. - theta) - 3. * lame.mu / (3. * lame.mu + slope);
             Mandel6 plastic; // effective plastic strain increment
             for (unsigned int i = 0; i < 6; ++i)
@@ -418,9 +420,10 @@ namespace alveolus
                          to_mandel(inverse));
                 const AnisotropicReturn plastic =
                   anisotropic_return(C, compliance, h, yield, need_tangent);
-                strain = plastic.strain;
-                stress = plastic.stress;
-                growth = plastic.multiplier;
+                strain               = plastic.strain;
+                stress               = plastic.stress;
+                growth               = plastic.multiplier;
+                response.dissipation = yield.work(growth);
                 if (need_tangent)
                   C = plastic.tangent;
               }

@@ -88,7 +88,8 @@ namespace alveolus
     {
       std::ostringstream points, lines, surface;
       points.precision(17);
-      points << "// Area " << area.name << ", lengths in mm.\n";
+      // No name in it: what is text elsewhere would be a command here.
+      points << "// An area, lengths in mm.\n";
       std::map<int, std::vector<unsigned int>> classes; // of node sizes
       unsigned int                             n_points = 0;
       for (std::size_t l = 0; l < loops.size(); ++l)

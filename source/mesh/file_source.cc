@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/text_file.h>
+#include <alveolus/mesh/gmsh.h>
 #include <alveolus/mesh/mesh_builder.h>
 #include <alveolus/mesh/mesh_checks.h>
 #include <alveolus/mesh/mesh_source.h>
 #include <alveolus/mesh/msh_reader.h>
+
+#include <filesystem>
 
 namespace alveolus
 {
@@ -19,7 +22,10 @@ namespace alveolus
                         file_name,
                         "Mesh file of gmsh (.msh), text format 4.1 or 2.2, "
                         "lengths in mm; relative to the folder of the "
-                        "parameter file.");
+                        "parameter file. A script (.geo), which can start "
+                        "programs, is refused unless --allow-scripts stands "
+                        "on the command line; it is run as a copy in the "
+                        "output folder.");
       prm.add_parameter("Refinements",
                         n_refinements,
                         "How often every cell is divided in the middle of its "
@@ -36,11 +42,30 @@ namespace alveolus
     Mesh<dim>
     create(const MPI_Comm    &communicator,
            const std::string &input_directory,
-           const std::string &) const override
+           const std::string &output_directory) const override
     {
       const std::string name = path_below(input_directory, file_name);
-      const std::string text =
+      std::string       text =
         read_text_file(communicator, name, "Mesh / file / File name");
+      const std::string ending =
+        std::filesystem::path(name).extension().string();
+      if (ending == ".geo" || ending == ".geo_unrolled")
+        {
+          if (!this->may_run_scripts())
+            throw InputError(
+              "Mesh / file / File name",
+              "'" + name + "' is a script of gmsh, which can start programs",
+              "make the mesh yourself (gmsh -" + std::to_string(dim) +
+                " ... -o NAME.msh) and name that, or, if you trust the "
+                "script, add --allow-scripts to the command line");
+          text = run_gmsh(text,
+                          dim,
+                          "mesh-from-script",
+                          output_directory,
+                          GmshSettings(),
+                          "Mesh / file / File name",
+                          communicator);
+        }
       MeshDescription<dim> description = read_msh<dim>(text, name);
       const MeshRepairs    repairs =
         check_description(description, allow_touching_parts);

@@ -4,6 +4,8 @@
 #include <alveolus/base/text_file.h>
 #include <alveolus/mesh/gmsh.h>
 
+#include <cctype>
+#include <cstdlib>
 #include <filesystem>
 
 namespace alveolus
@@ -11,15 +13,19 @@ namespace alveolus
   void
   GmshSettings::declare_parameters(dealii::ParameterHandler &prm)
   {
-    prm.add_parameter("Mesher program",
-                      program,
-                      "The program gmsh, searched for in PATH if it is given "
-                      "without a folder. It is run without a shell.",
-                      dealii::Patterns::FileName());
     prm.add_parameter("Mesher time limit",
                       time_limit,
                       "Wall clock time [s] after which the mesher is stopped.",
                       dealii::Patterns::Double(0.01));
+  }
+
+
+
+  std::string
+  mesher_program()
+  {
+    const char *const chosen = std::getenv("ALVEOLUS_MESHER");
+    return chosen == nullptr || *chosen == 0 ? "gmsh" : chosen;
   }
 
 
@@ -34,34 +40,53 @@ namespace alveolus
            const MPI_Comm     &communicator)
   {
     return text_from_root(communicator, [&]() -> std::string {
-      // Absolute paths: none can be taken for an option.
+      // Absolute paths: none can be taken for an option. The name stays a name
+      // in this folder, whatever it was made of.
+      std::string stem = name;
+      for (char &c : stem)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' &&
+            c != '_')
+          c = '-';
       const std::filesystem::path folder =
         std::filesystem::absolute(output_directory);
-      const std::string script = (folder / (name + ".geo")).string();
-      const std::string result = (folder / (name + ".msh")).string();
+      const std::string script  = (folder / (stem + ".geo")).string();
+      const std::string result  = (folder / (stem + ".msh")).string();
+      const std::string options = script + ".opt";
       write_text_file(script, geometry);
-      std::error_code ignored;
-      std::filesystem::remove(result, ignored); // never take an old one
+      // Never take an old mesh. And gmsh would execute a file of options that
+      // somebody has put beside the script.
+      for (const std::string &file : {result, options})
+        {
+          std::error_code error;
+          std::filesystem::remove(file, error);
+          if (std::filesystem::symlink_status(file).type() !=
+              std::filesystem::file_type::not_found)
+            throw InputError(where,
+                             "'" + file + "' cannot be removed",
+                             "remove it, or choose another output folder");
+        }
 
-      const ProcessResult run     = run_process({settings.program,
-                                                 script,
-                                                 "-" + std::to_string(dim),
-                                                 "-format",
-                                                 "msh41",
-                                                 "-nt",
-                                                 "1",
-                                                 "-o",
-                                                 result},
+      const std::string   name_of_it = mesher_program();
+      const ProcessResult run        = run_process({name_of_it,
+                                                    script,
+                                                    "-" + std::to_string(dim),
+                                                    "-format",
+                                                    "msh41",
+                                                    "-nt",
+                                                    "1",
+                                                    "-o",
+                                                    result},
                                             settings.time_limit,
-                                            // no .gmshrc, no saved options
-                                            {{"GMSH_HOME", folder.string()}});
-      const std::string   program = "'" + settings.program + "'";
+                                            // no .gmshrc, no saved options:
+                                            // nothing is below this
+                                            {{"GMSH_HOME", "/dev/null"}});
+      const std::string   program    = "'" + name_of_it + "'";
       if (!run.started)
-        throw InputError(where + " / Mesher program",
-                         program + " " + run.summary(),
+        throw InputError(where,
+                         "the mesher " + program + " " + run.summary(),
                          "install gmsh (Debian: apt-get install gmsh), name "
-                         "the program, or read a finished mesh with the mesh "
-                         "type 'file'");
+                         "it in the environment variable ALVEOLUS_MESHER, or "
+                         "read a finished mesh with the mesh type 'file'");
       if (!run.succeeded())
         throw RunError(where,
                        "the mesher " + program + " " + run.summary() +
@@ -76,7 +101,7 @@ namespace alveolus
       if (!std::filesystem::exists(result))
         throw RunError(where,
                        "the mesher " + program + " ended without a mesh",
-                       "check that 'Mesher program' is gmsh");
+                       "check that ALVEOLUS_MESHER names gmsh");
       return read_text_file(MPI_COMM_SELF, result, where);
     });
   }

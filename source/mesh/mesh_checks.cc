@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <alveolus/base/errors.h>
+#include <alveolus/base/problems.h>
 #include <alveolus/mesh/mesh_checks.h>
 
 #include <deal.II/base/tensor.h>
@@ -102,11 +102,13 @@ namespace alveolus
         : mesh(mesh)
       {}
 
-      MeshRepairs repairs;
+      MeshRepairs      repairs;
+      mutable Problems problems;
 
       void
       drop_unused_vertices()
       {
+        const auto                old_numbers = mesh.vertex_numbers;
         std::vector<unsigned int> new_index(mesh.vertices.size(), unused);
         for (const auto &cell : mesh.cells)
           for (const unsigned int v : cell.vertices)
@@ -124,11 +126,11 @@ namespace alveolus
 
         for (const auto &point : mesh.points)
           if (new_index[point.second] == unused)
-            throw InputError(mesh.source,
-                             "the named point '" + point.first + "' (node " +
-                               number(point.second) +
-                               ") is no corner of any cell",
-                             "embed the point in the geometry, or remove it");
+            problems.add(mesh.source,
+                         "the named point '" + point.first + "' (node " +
+                           std::to_string(old_numbers[point.second]) +
+                           ") is no corner of any cell",
+                         "embed the point in the geometry, or remove it");
         for (auto &point : mesh.points)
           point.second = new_index[point.second];
         renumber(mesh.cells, new_index, "cell");
@@ -157,7 +159,7 @@ namespace alveolus
             const auto worst = std::min_element(corners.begin(), corners.end());
             // Written so that a NaN of coincident corners is refused too.
             if (!(*worst > 1e-10))
-              throw InputError(
+              problems.add(
                 mesh.place(cell.line),
                 "element " + std::to_string(cell.number) +
                   " is inverted or flat at node " +
@@ -176,7 +178,7 @@ namespace alveolus
             {
               const auto added = owner.emplace(normalised(face), c);
               if (!added.second)
-                throw InputError(
+                problems.add(
                   mesh.place(mesh.cells[c].line),
                   "elements " +
                     std::to_string(mesh.cells[added.first->second].number) +
@@ -218,19 +220,19 @@ namespace alveolus
             all_edges.insert(edge);
         for (const auto &line : mesh.lines)
           if (all_edges.count(sorted(line.vertices)) == 0)
-            throw InputError(mesh.place(line.line),
-                             "the line from node " + number(line.vertices[0]) +
-                               " to node " + number(line.vertices[1]) +
-                               " is no edge of any cell",
-                             "embed the curve in the surface it lies in, or "
-                             "mesh lines and cells together");
+            problems.add(mesh.place(line.line),
+                         "the line from node " + number(line.vertices[0]) +
+                           " to node " + number(line.vertices[1]) +
+                           " is no edge of any cell",
+                         "embed the curve in the surface it lies in, or "
+                         "mesh lines and cells together");
         if constexpr (dim == 3)
           for (const auto &quad : mesh.quads)
             if (all_faces.count(sorted(quad.vertices)) == 0)
-              throw InputError(mesh.place(quad.line),
-                               "quad " + std::to_string(quad.number) +
-                                 " is no face of any hexahedron",
-                               "mesh surfaces and volumes together");
+              problems.add(mesh.place(quad.line),
+                           "quad " + std::to_string(quad.number) +
+                             " is no face of any hexahedron",
+                           "mesh surfaces and volumes together");
       }
 
       void
@@ -289,12 +291,15 @@ namespace alveolus
           for (unsigned int &v : element.vertices)
             {
               if (new_index[v] == unused)
-                throw InputError(mesh.place(element.line),
-                                 "the named " + kind + " " +
-                                   std::to_string(element.number) +
-                                   " has a node that belongs to no cell",
-                                 "embed the curve or surface in the cells, or "
-                                 "take it out of its Physical group");
+                {
+                  problems.add(mesh.place(element.line),
+                               "the named " + kind + " " +
+                                 std::to_string(element.number) +
+                                 " has a node that belongs to no cell",
+                               "embed the curve or surface in the cells, or "
+                               "take it out of its Physical group");
+                  break;
+                }
               v = new_index[v];
             }
       }
@@ -319,19 +324,19 @@ namespace alveolus
                        mesh.vertices[edge[0]].distance(mesh.vertices[edge[1]]));
         for (std::size_t i = 0; i < order.size(); ++i)
           for (std::size_t j = i + 1;
-               j < order.size() &&
+               j < order.size() && !problems.full() &&
                mesh.vertices[order[j]][0] - mesh.vertices[order[i]][0] <=
                  same_place * shortest;
                ++j)
             if (mesh.vertices[order[i]].distance(mesh.vertices[order[j]]) <=
                   same_place * shortest &&
                 !(allow_touching_parts && part[order[i]] != part[order[j]]))
-              throw InputError(mesh.source,
-                               "nodes " + number(order[i]) + " and " +
-                                 number(order[j]) + " lie at the same place " +
-                                 coordinates(order[i]),
-                               "make the geometry conforming (gmsh: Coherence; "
-                               "or Coherence Mesh;)");
+              problems.add(mesh.source,
+                           "nodes " + number(order[i]) + " and " +
+                             number(order[j]) + " lie at the same place " +
+                             coordinates(order[i]),
+                           "make the geometry conforming (gmsh: Coherence; "
+                           "or Coherence Mesh;)");
       }
 
       void
@@ -357,7 +362,9 @@ namespace alveolus
                                              const double       x) {
                                         return mesh.vertices[vertex][0] < x;
                                       });
-            for (; v != order.end() && mesh.vertices[*v][0] <= end; ++v)
+            for (; v != order.end() && mesh.vertices[*v][0] <= end &&
+                   !problems.full();
+                 ++v)
               {
                 const dealii::Tensor<1, dim> av = mesh.vertices[*v] - a;
                 const double                 s  = (av * ab) / (length * length);
@@ -365,14 +372,12 @@ namespace alveolus
                     s < 1. - same_place &&
                     (av - s * ab).norm() <= same_place * length &&
                     !(allow_touching_parts && part[*v] != part[edge[0]]))
-                  throw InputError(mesh.source,
-                                   "node " + number(*v) + " " +
-                                     coordinates(*v) +
-                                     " hangs on the edge between nodes " +
-                                     number(edge[0]) + " and " +
-                                     number(edge[1]),
-                                   "neighbouring cells must share whole "
-                                   "edges: make the geometry conforming");
+                  problems.add(mesh.source,
+                               "node " + number(*v) + " " + coordinates(*v) +
+                                 " hangs on the edge between nodes " +
+                                 number(edge[0]) + " and " + number(edge[1]),
+                               "neighbouring cells must share whole "
+                               "edges: make the geometry conforming");
               }
           }
       }
@@ -410,12 +415,18 @@ namespace alveolus
   check_description(MeshDescription<dim> &mesh, const bool allow_touching_parts)
   {
     Checks<dim> checks(mesh);
-    checks.drop_unused_vertices();
-    checks.orient_cells();
-    checks.find_faces();
+    // Each builds on the ones before it, and finds all that is wrong.
+    const auto check = [&](const auto &action) {
+      action();
+      checks.problems.throw_if_any();
+    };
+    check([&]() { checks.drop_unused_vertices(); });
+    check([&]() { checks.orient_cells(); });
+    check([&]() { checks.find_faces(); });
     checks.find_parts();
     checks.check_named_elements();
     checks.check_places(allow_touching_parts);
+    checks.problems.throw_if_any();
     return checks.repairs;
   }
 

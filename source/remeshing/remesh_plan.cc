@@ -37,8 +37,15 @@ namespace alveolus
                       accept_quality,
                       "A new mesh is taken if its smallest scaled Jacobian in "
                       "equilibrium is at least this; else the best one that "
-                      "is better than the old mesh.",
+                      "is better than the old mesh, unless `If none is "
+                      "acceptable` forbids.",
                       Patterns::Double(-1., 1.));
+    prm.add_parameter("If none is acceptable",
+                      if_none_is_acceptable,
+                      "After a remesh for quality that no candidate reached "
+                      "`Accept quality`: stop the run, or go on with the best "
+                      "mesh there is.",
+                      Patterns::Selection("stop|go on"));
     prm.add_parameter("After failure",
                       after_failure,
                       "Also remesh where no step is short enough, once per "
@@ -53,6 +60,14 @@ namespace alveolus
                       "The forces a remesh leaves unbalanced are released in "
                       "parts, halved at most this many times.",
                       Patterns::Integer(0, 30));
+    prm.add_parameter("Largest uncovered part",
+                      uncovered_part,
+                      "A new mesh is refused if more than this part of the "
+                      "volume of a region is outside the old mesh of the "
+                      "region. There the history takes the mean over what is "
+                      "covered, or the nearest value. Thin layers with coarse "
+                      "curved walls need more.",
+                      Patterns::Double(0., 1.));
   }
 
   RemeshPlan::RemeshPlan(const Parameters &parameters, const std::string &where)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <alveolus/base/errors.h>
+#include <alveolus/base/problems.h>
 #include <alveolus/mesh/quality.h>
 #include <alveolus/rezoning/rezoner.h>
 
@@ -35,14 +35,16 @@ namespace alveolus
     const auto stage = [&](const auto &rule) {
       return rule.second->stage(mesh.names, rule.first);
     };
+    // The stage of a rule depends on the names it acts on.
+    Problems problems;
+    for (const auto &rule : rules)
+      problems.collect([&]() { stage(rule); });
+    problems.throw_if_any();
     std::stable_sort(rules.begin(),
                      rules.end(),
                      [&](const auto &a, const auto &b) {
                        return stage(a) < stage(b);
                      });
-    if (rules.size() == 1)
-      stage(rules.front()); // checks its names, too
-
     std::set<NodeId> taken;
     // The rule of this stage that sets a component of an owned node
     std::unordered_map<NodeId, std::array<unsigned int, dim>> setter;
@@ -50,7 +52,10 @@ namespace alveolus
       {
         RezoningRule<dim> &rule = *rules[r].second;
         const Stage        now  = stage(rules[r]);
-        rule.attach(nodes, positions, taken, rules[r].first);
+        problems.collect(
+          [&]() { rule.attach(nodes, positions, taken, rules[r].first); });
+        if (!problems.none())
+          continue; // to hear what the others have to say
 
         unsigned int        rival = none;
         NodeId              where = numbers::invalid_dof_index;
@@ -104,6 +109,7 @@ namespace alveolus
             setter.clear();
           }
       }
+    problems.throw_if_any();
   }
 
   template <int dim>

@@ -23,6 +23,10 @@ namespace alveolus
     initial = mesh_nodes.gather(positions, nodes);
 
     ring.resize(nodes.size());
+    corners.resize(nodes.size());
+    for (unsigned int k = 0; k < quads.size(); ++k)
+      for (unsigned int v = 0; v < 4; ++v)
+        corners[quads[k][v]].emplace_back(k, v);
     std::map<std::pair<unsigned int, unsigned int>, unsigned int> edges;
     for (const auto &quad : quads)
       {
@@ -187,14 +191,12 @@ namespace alveolus
   SurfacePatch::fit(const std::vector<Place> &x, const unsigned int i) const
   {
     Frame frame{x[i], {}, {}, {}};
-    for (const auto &quad : quads)
-      for (unsigned int v = 0; v < 4; ++v)
-        if (quad[v] == i)
-          {
-            const Tensor<1, 3> more =
-              cross_product_3d(x[quad[v ^ 1]] - x[i], x[quad[v ^ 2]] - x[i]);
-            frame.normal += frame.normal * more < 0. ? -more : more;
-          }
+    for (const auto &[k, v] : corners[i])
+      {
+        const Tensor<1, 3> more = cross_product_3d(x[quads[k][v ^ 1]] - x[i],
+                                                   x[quads[k][v ^ 2]] - x[i]);
+        frame.normal += frame.normal * more < 0. ? -more : more;
+      }
     frame.normal /= frame.normal.norm();
     unsigned int least = 0;
     for (unsigned int c = 1; c < 3; ++c)
@@ -243,11 +245,12 @@ namespace alveolus
 
   void
   SurfacePatch::project(const std::vector<Place> &surface,
+                        const std::vector<bool>  &wanted,
                         std::vector<Place>       &x) const
   {
     std::map<unsigned int, Frame> frames;
     for (unsigned int i = 0; i < nodes.size(); ++i)
-      if (is_free[i])
+      if (is_free[i] && wanted[i])
         {
           unsigned int nearest = i;
           for (bool moved = true; moved;)

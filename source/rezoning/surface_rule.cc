@@ -66,7 +66,12 @@ namespace alveolus
       {
         auto x = patch.harmonic(nodes.gather(proposed, patch.nodes));
         if (stay)
-          patch.project(nodes.gather(lagrangian, patch.nodes), x);
+          {
+            std::vector<bool> wanted(x.size());
+            for (unsigned int i = 0; i < x.size(); ++i)
+              wanted[i] = nodes.is_owned(patch.nodes[i]);
+            patch.project(nodes.gather(lagrangian, patch.nodes), wanted, x);
+          }
         for (unsigned int i = 0; i < x.size(); ++i)
           if (patch.is_free[i] && nodes.is_owned(patch.nodes[i]))
             nodes.set(proposed, patch.nodes[i], x[i]);

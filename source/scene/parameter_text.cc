@@ -163,13 +163,23 @@ namespace alveolus
                            std::vector<std::string> &open_files,
                            std::vector<std::string> &problems)
   {
-    if (std::find(open_files.begin(), open_files.end(), name) !=
-        open_files.end())
+    std::error_code ignored;
+    for (const auto &open_file : open_files)
+      if (open_file == name ||
+          std::filesystem::equivalent(open_file, name, ignored))
+        {
+          problems.push_back(name + ": the file includes itself");
+          return;
+        }
+    // Files that each include the next one twice would never end.
+    if (++n_files > most_files)
       {
-        problems.push_back(name + ": the file includes itself");
+        if (n_files == most_files + 1)
+          problems.push_back(name + ": more than " +
+                             std::to_string(most_files) +
+                             " files are included; include each once");
         return;
       }
-    std::error_code ignored;
     if (std::filesystem::is_character_file(name, ignored) &&
         !std::filesystem::equivalent(name, "/dev/stdin", ignored))
       {
@@ -323,7 +333,9 @@ namespace alveolus
 
 
   void
-  ParameterText::apply(ParameterHandler &prm) const
+  ParameterText::apply(ParameterHandler            &prm,
+                       std::vector<std::string>     problems,
+                       const std::set<std::string> &unknown) const
   {
     // A variant may shorten the Names, or change the Type of the mesh, of the
     // file it includes: what then has no place any more is no mistake.
@@ -341,9 +353,11 @@ namespace alveolus
       return false;
     };
 
-    std::vector<std::string> problems;
     for (const auto &entry : entries)
       {
+        if (entry.section.size() > 1 &&
+            unknown.count(entry.section[0] + "/" + entry.section[1]) > 0)
+          continue;
         std::vector<std::string> path;
         bool                     known = true;
         for (const auto &section : entry.section)

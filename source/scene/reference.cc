@@ -160,6 +160,7 @@ namespace alveolus
     write_section<Equilibrium<2>::Parameters>("Solver", out);
     write_registry<RezoningRule<2>>("Rezoning", members, out);
     write_registry_3d<RezoningRule>(out);
+    write_section<RezoningPlan>("Rezoning: when", out);
     out << "## Transfer\n\n`Scheme` is one of "
         << Registry<TransferScheme<2>>::names(", ")
         << "; `Largest donor fraction` bounds what may leave a sub-cell in one "
@@ -173,9 +174,12 @@ namespace alveolus
       "subsection of that name; its history is transferred by overlap in the "
       "order of `Transfer / Scheme`. When to remesh:",
       out);
+    write_registry_3d<Remesher>(out);
     write_section<RemeshPlan::Parameters>("Remeshing: when", out);
-    out << "## Monitor\n\n`Inverted corners` (stop or report), `Minimum "
-           "quality`.\n\n";
+    out
+      << "## Monitor\n\n`Inverted corners` (stop or report), `Minimum "
+         "quality`, `Warn below quality`, `Energy balance` (books of work and "
+         "energy).\n\n";
     write_section<StepControl::Parameters>("Time", out);
     write_registry<Recorder<2>>("Records", members, out);
     out << "## Output\n\n`Directory`, `Fields`, `Field interval`.\n\n";

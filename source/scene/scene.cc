@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/base/problems.h>
 #include <alveolus/materials/elastic_material.h>
 #include <alveolus/scene/scene.h>
 
@@ -15,72 +16,10 @@ namespace alveolus
     , text(accuracy_levels.statements())
   {
     declare();
-    text.apply(prm);
+    text.apply(prm, problems, unknown);
+    check_parts();
     mesh_source->set_largest_number_of_cells(largest_number_of_cells);
 
-    for (auto &law : interface_law_list)
-      {
-        law.object->initialize(law.where);
-        interface_laws[law.name] = std::move(law.object);
-      }
-    for (auto &law : remodelling_laws)
-      law.object->initialize(law.where);
-
-    // Bone stores density and fabric only where some region remodels them.
-    for (const auto &region : regions)
-      {
-        const unsigned int material = material_of(region);
-        const int          law      = remodelling_of(region);
-        if (law < 0)
-          continue;
-        auto *bone =
-          dynamic_cast<RemodelledBone *>(materials[material].object.get());
-        if (bone == nullptr)
-          throw InputError("Regions / " + region.name + " / Remodelling",
-                           "material '" + region.material + "' is a " +
-                             materials[material].type +
-                             ", which cannot remodel",
-                           "use a material of type remodelled bone, or none");
-        for (const auto &other : regions)
-          if (other.material == region.material &&
-              other.remodelling != region.remodelling)
-            throw InputError("Regions / " + other.name + " / Remodelling",
-                             "is '" + other.remodelling + "', but region '" +
-                               region.name + "' uses the same material with '" +
-                               region.remodelling + "'",
-                             "define a material of its own for it");
-        bone->set_remodelled(true,
-                             remodelling_laws[law].object->changes_fabric());
-      }
-    for (auto &material : materials)
-      material.object->initialize(dim, material.where);
-    for (const auto &region : regions)
-      if (region.deformation != "history" &&
-          dynamic_cast<const ElasticMaterial *>(
-            materials[material_of(region)].object.get()) == nullptr)
-        throw InputError(text.origin("Regions/" + region.name +
-                                     "/Transfer of deformation") +
-                           ": Regions / " + region.name +
-                           " / Transfer of deformation",
-                         "material '" + region.material + "' is a " +
-                           materials[material_of(region)].type +
-                           ", whose stress does not follow from the total "
-                           "deformation alone",
-                         "use history, or a hyperelastic material");
-
-    if (regions.empty())
-      throw InputError(text.origin("Regions/Names"),
-                       "the scene has no region",
-                       "list at least one in Regions / Names");
-    if (remesher && degree > remesher->largest_degree())
-      throw InputError(text.origin("Mesh/Degree") + ": Mesh / Degree",
-                       "it is " + std::to_string(degree) + ", the remesher '" +
-                         remesher_type + "' makes meshes of degree " +
-                         std::to_string(remesher->largest_degree()) +
-                         " at most (hanging nodes)",
-                       "set it to " +
-                         std::to_string(remesher->largest_degree()) +
-                         ", or choose another `Remeshing / Type`");
     if (output_directory.empty())
       {
         std::string name = text.file_name.substr(
@@ -89,10 +28,103 @@ namespace alveolus
             : text.file_name.find_last_of('/') + 1);
         output_directory = "output/" + name.substr(0, name.rfind(".prm"));
       }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::check_parts()
+  {
+    Problems found;
+    for (auto &law : interface_law_list)
+      {
+        found.collect([&]() { law.object->initialize(law.where); });
+        interface_laws[law.name] = std::move(law.object);
+      }
+    for (auto &law : remodelling_laws)
+      found.collect([&]() { law.object->initialize(law.where); });
+
+    // What a region names; without it nothing more can be said of the region.
+    std::vector<const Region *> complete;
+    for (const auto &region : regions)
+      if (found.collect([&]() { material_of(region); }) &
+          found.collect([&]() { remodelling_of(region); }))
+        complete.push_back(&region);
+
+    // Bone stores density and fabric only where some region remodels them.
+    for (const Region *const region : complete)
+      found.collect([&]() {
+        const unsigned int material = material_of(*region);
+        const int          law      = remodelling_of(*region);
+        if (law < 0)
+          return;
+        auto *bone =
+          dynamic_cast<RemodelledBone *>(materials[material].object.get());
+        if (bone == nullptr)
+          throw InputError("Regions / " + region->name + " / Remodelling",
+                           "material '" + region->material + "' is a " +
+                             materials[material].type +
+                             ", which cannot remodel",
+                           "use a material of type remodelled bone, or none");
+        for (const auto &other : regions)
+          if (other.material == region->material &&
+              other.remodelling != region->remodelling)
+            throw InputError("Regions / " + other.name + " / Remodelling",
+                             "is '" + other.remodelling + "', but region '" +
+                               region->name +
+                               "' uses the same material with '" +
+                               region->remodelling + "'",
+                             "define a material of its own for it");
+        bone->set_remodelled(true,
+                             remodelling_laws[law].object->changes_fabric());
+      });
+    for (auto &material : materials)
+      found.collect(
+        [&]() { material.object->initialize(dim, material.where); });
+    for (const Region *const region : complete)
+      if (region->deformation != "history" &&
+          dynamic_cast<const ElasticMaterial *>(
+            materials[material_of(*region)].object.get()) == nullptr)
+        found.add(text.origin("Regions/" + region->name +
+                              "/Transfer of deformation") +
+                    ": Regions / " + region->name +
+                    " / Transfer of deformation",
+                  "material '" + region->material + "' is a " +
+                    materials[material_of(*region)].type +
+                    ", whose stress does not follow from the total "
+                    "deformation alone",
+                  "use history, or a hyperelastic material");
+
+    if (regions.empty())
+      found.add(text.origin("Regions/Names"),
+                "the scene has no region",
+                "list at least one in Regions / Names");
+    if (remesher && degree > remesher->largest_degree())
+      found.add(text.origin("Mesh/Degree") + ": Mesh / Degree",
+                "it is " + std::to_string(degree) + ", the remesher '" +
+                  remesher_type + "' makes meshes of degree " +
+                  std::to_string(remesher->largest_degree()) +
+                  " at most (hanging nodes)",
+                "set it to " + std::to_string(remesher->largest_degree()) +
+                  ", or choose another `Remeshing / Type`");
+    if (remesher && !remesher->can_keep_lattices())
+      for (const auto &rule : rezoning_rules)
+        if (rule.object->needs_lattices())
+          found.add(text.origin("Rezoning/" + rule.name + "/Type") + ": " +
+                      rule.where + " / Type",
+                    "the rule '" + rule.type +
+                      "' needs regions whose cells form lattices, and the "
+                      "remesher '" +
+                      remesher_type + "' makes none",
+                    "use Giuliani or barrier for these regions");
+    if (!rezoning_rules.empty())
+      found.collect([&]() { rezoning_plan.check("Rezoning"); });
     if (time.initial_step < time.minimum_step)
-      throw InputError("Time / Initial step",
-                       "is smaller than Time / Minimum step",
-                       "make it at least as large");
+      found.add("Time / Initial step",
+                "is smaller than Time / Minimum step",
+                "make it at least as large");
+    found.throw_if_any();
   }
 
 
@@ -115,15 +147,24 @@ namespace alveolus
         member.where           = section + " / " + name;
         const std::string path = section + "/" + name + "/Type";
         member.type            = text.value(path, "");
-        if (member.type.empty())
-          throw InputError(text.origin(section + "/Names"),
-                           "'" + name + "' has no Type",
-                           "write subsection " + section + " / subsection " +
-                             name + " / set Type = one of: " +
-                             Registry<Interface>::names(", "));
-        member.object = Registry<Interface>::create(member.type,
-                                                    text.origin(path) + ": " +
-                                                      member.where + " / Type");
+        try
+          {
+            if (member.type.empty())
+              throw InputError(text.origin(section + "/Names"),
+                               "'" + name + "' has no Type",
+                               "write subsection " + section +
+                                 " / subsection " + name +
+                                 " / set Type = one of: " +
+                                 Registry<Interface>::names(", "));
+            member.object = Registry<Interface>::create(
+              member.type, text.origin(path) + ": " + member.where + " / Type");
+          }
+        catch (const InputError &error)
+          {
+            problems.push_back(error.what());
+            unknown.insert(section + "/" + name);
+            continue;
+          }
         prm.enter_subsection(name);
         prm.declare_entry("Type", member.type, Patterns::Anything(), "");
         member.object->declare_parameters(prm);
@@ -222,6 +263,9 @@ namespace alveolus
     prm.leave_subsection();
 
     rezoning_rules = make_collection<RezoningRule<dim>>("Rezoning");
+    prm.enter_subsection("Rezoning");
+    rezoning_plan.declare(prm);
+    prm.leave_subsection();
 
     prm.enter_subsection("Transfer");
     prm.add_parameter("Scheme",
@@ -259,11 +303,22 @@ namespace alveolus
                       "What a vertex with a non-positive Jacobian does to a "
                       "step: stop rejects it, report counts it.",
                       Patterns::Selection("stop|report"));
+    prm.add_parameter("Warn below quality",
+                      warn_quality,
+                      "The log tells when the smallest scaled Jacobian falls "
+                      "below this, once each time; -1 is never.",
+                      Patterns::Double(-1., 1.));
     prm.add_parameter("Minimum quality",
                       minimum_quality,
                       "A run whose smallest scaled Jacobian falls below this "
                       "stops; -1 is never.",
                       Patterns::Double(-1., 1.));
+    prm.add_parameter("Energy balance",
+                      energy_balance,
+                      "Keep books of work and energy, with columns in the "
+                      "history and totals in the summary (costs one assembly "
+                      "of forces a step).",
+                      Patterns::Bool());
     prm.leave_subsection();
 
     prm.enter_subsection("Time");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/algebra/adaptive_tolerance.h>
 #include <alveolus/solver/equilibrium.h>
 
 #include <deal.II/dofs/dof_tools.h>
@@ -17,6 +18,26 @@ namespace alveolus
      * stiffnesses may reach it, too, so that it only explains failures.
      */
     constexpr double nearly_singular = 1e-14;
+
+    /**
+     * Residual asked of an iterative linear solver, relative to the right hand
+     * side: small enough not to be felt by Newton's method (choice 2 of
+     * Eisenstat & Walker, SIAM J. Sci. Comput. 17 (1996) 16-32), and far below
+     * the residual at which Newton's method ends.
+     * @param norm, last_norm nonlinear residual now and before the last
+     *        correction; 0 if there was none
+     * @param enough residual at which Newton's method ends
+     */
+    double
+    linear_tolerance(const double norm,
+                     const double last_norm,
+                     const double enough)
+    {
+      constexpr double largest = 1e-2;
+      const double     ratio   = last_norm > 0. ? norm / last_norm : 1.;
+      return std::max(std::min(largest, 0.5 * ratio * ratio),
+                      1e-2 * enough / norm);
+    }
   } // namespace
 
   template <int dim>
@@ -69,7 +90,8 @@ namespace alveolus
     prm.add_parameter(
       "Linear tolerance",
       linear_tolerance,
-      "Relative residual at which iterative linear solvers stop.",
+      "Relative residual at which iterative linear solvers stop; earlier in "
+      "Newton iterations that are still far from the solution.",
       Patterns::Double(1e-15, 0.1));
   }
 
@@ -241,10 +263,24 @@ namespace alveolus
 
 
   template <int dim>
+  AssemblyResult
+  Equilibrium<dim>::assemble_committed()
+  {
+    const Interval now{state.time, state.time};
+    held_imbalance = nullptr;
+    assembler.begin_step(now);
+    set_constraints(now);
+    return assemble_without_increment();
+  }
+
+
+
+  template <int dim>
   typename Equilibrium<dim>::Imbalance
   Equilibrium<dim>::imbalance(const double t, double &relative)
   {
     const Interval now{t, t};
+    held_imbalance = nullptr;
     assembler.begin_step(now);
     set_constraints(now);
     const AssemblyResult result = assemble_without_increment();
@@ -268,14 +304,16 @@ namespace alveolus
   {
     held_imbalance    = held;
     bool       solved = false;
-    const auto repeat = [&](const std::string &reason) {
+    const auto repeat = [&](const std::string &reason,
+                            const std::string &cause) {
       // A body that nothing holds goes anywhere: what comes of it is no cause.
       const bool singular = solved && system->pivot_ratio() < nearly_singular;
       return Verdict{Verdict::Kind::repeat,
                      reason + (singular ? " (the matrix is singular but for "
                                           "round-off: check that the "
                                           "conditions hold every body)"
-                                        : "")};
+                                        : ""),
+                     cause};
     };
     assembler.begin_step(interval);
     set_constraints(interval);
@@ -308,7 +346,7 @@ namespace alveolus
         result = assemble(increment, true, false);
         lift   = false;
         if (!result.good)
-          return repeat(result.reason);
+          return repeat(result.reason, "material or mesh");
       }
     else if (parameters.predictor == "extrapolated" && state.last_step > 0.)
       {
@@ -330,20 +368,24 @@ namespace alveolus
         increment.update_ghost_values();
         result = assemble(increment, true, true);
         if (!result.good)
-          return repeat(result.reason);
+          return repeat(result.reason, "material or mesh");
       }
 
     unsigned int n_before_augmentation = 0;
     bool         have_matrix           = true;
     std::size_t  first                 = lift ? 1 : 0; // of Newton's residuals
+    double       last_norm             = 0.;
     for (;;)
       {
         const double norm  = free_norm(residual_vector);
         const double scale = std::max(result.force_scale, 1e-300);
         report.residuals.push_back(norm / scale);
-        report.energy = result.energy;
+        report.energy       = result.energy;
+        report.energy_moved = result.energy_moved;
+        report.dissipation  = result.dissipation;
+        report.force_scale  = result.force_scale;
         if (!std::isfinite(norm))
-          return repeat("the residual is not a finite number");
+          return repeat("the residual is not a finite number", "Newton");
         if (!lift && (norm <= parameters.tolerance * result.force_scale ||
                       norm <= parameters.absolute_tolerance))
           {
@@ -355,7 +397,7 @@ namespace alveolus
               }
             catch (const RunError &error)
               {
-                return repeat(error.what());
+                return repeat(error.what(), "contact");
               }
             ++report.n_augmentations;
             n_before_augmentation = report.n_iterations;
@@ -363,14 +405,15 @@ namespace alveolus
             have_matrix           = true;
             result                = assemble(increment, true, false);
             if (!result.good)
-              return repeat(result.reason);
+              return repeat(result.reason, "material or mesh");
             continue;
           }
         const unsigned int n = report.n_iterations - n_before_augmentation;
         if (n >= parameters.max_iterations)
           return repeat("Newton did not converge in " + std::to_string(n) +
-                        " iterations (residual " +
-                        Utilities::to_string(norm / scale) + ")");
+                          " iterations (residual " +
+                          Utilities::to_string(norm / scale) + ")",
+                        "Newton");
 
         if (!have_matrix)
           {
@@ -382,6 +425,14 @@ namespace alveolus
         residual_vector *= -1.;
         if (lift)
           residual_vector += lifted;
+        else if (auto *adaptive =
+                   dynamic_cast<AdaptiveTolerance *>(system.get()))
+          adaptive->ask(
+            linear_tolerance(norm,
+                             last_norm,
+                             std::max(parameters.tolerance * result.force_scale,
+                                      parameters.absolute_tolerance)));
+        last_norm = lift ? 0. : norm;
         {
           TimerOutput::Scope scope(timer, "linear solver");
           try
@@ -391,7 +442,7 @@ namespace alveolus
             }
           catch (const RunError &error)
             {
-              return repeat(error.what());
+              return repeat(error.what(), "linear solver");
             }
         }
         ++report.n_iterations;
@@ -438,7 +489,7 @@ namespace alveolus
                  halvings == parameters.max_line_search))
               break;
             if (lift || halvings == parameters.max_line_search)
-              return repeat(result.reason);
+              return repeat(result.reason, "material or mesh");
             fraction /= 2.;
           }
         report.n_line_search += halvings;

@@ -166,6 +166,108 @@ namespace alveolus
 
 
   template <int dim>
+  void
+  StaggeredStep<dim>::book_energy()
+  {
+    booked = active;
+    if (booked)
+      equilibrium.keep_moved_weights();
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  StaggeredStep<dim>::point_energies(const std::vector<double> &values) const
+  {
+    const HistoryStore<dim> &history = state.history;
+    std::vector<double>      energies;
+    energies.reserve(cells.size() * history.n_points);
+    for (const unsigned int cell : cells)
+      {
+        const auto &bone = *laws[history.region(cell)].bone;
+        for (unsigned int q = 0; q < history.n_points; ++q)
+          energies.push_back(bone.energy(
+            bone.point(values.data() + (history.old_record(cell, q) -
+                                        history.old_values.data()))));
+      }
+    return energies;
+  }
+
+
+
+  // Staggered, the equilibrium saw the density of t_n all the time: the change
+  // of the energy comes after it, at the strain of t_{n+1}. Iterated, it saw
+  // that of t_{n+1} at the end: the mean of the changes at the strains of both
+  // ends is right to second order, as the work of the forces is.
+  template <int dim>
+  void
+  StaggeredStep<dim>::balance(const std::vector<double> &before,
+                              const std::vector<double> &seen,
+                              const std::vector<double> *iterated,
+                              RemodellingSummary        &summary) const
+  {
+    const HistoryStore<dim>  &history = state.history;
+    const auto               &forces  = equilibrium.assembly();
+    const std::vector<double> after   = point_energies(history.trial_values);
+    const auto               &fe      = state.configuration.fe;
+    std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+    unsigned int                         c = 0, i = 0;
+    for (const auto &cell :
+         state.configuration.dof_handler.active_cell_iterators())
+      {
+        if (c == cells.size())
+          break;
+        if (cell->active_cell_index() != cells[c])
+          continue;
+        const auto   &bone    = *laws[history.region(cells[c])].bone;
+        const double *weights = forces.step_geometry().weights(cells[c]);
+        cell->get_dof_indices(dofs);
+        for (unsigned int q = 0; q < history.n_points; ++q, ++i)
+          {
+            const double *old = history.old_record(cells[c], q);
+            if (iterated != nullptr)
+              old = iterated->data() + (old - history.old_values.data());
+            const double weight = weights[q] / bone.volume_ratio(old);
+            const double moved  = forces.moved_weight(cells[c], q);
+            summary.stored += (after[i] - seen[i]) * weight;
+            summary.stored_moved += (after[i] - seen[i]) * moved;
+            if (iterated == nullptr)
+              {
+                summary.energy += (after[i] - before[i]) * moved;
+                continue;
+              }
+            const BonePoint start = bone.point(old);
+            BonePoint       end = bone.point(history.trial_record(cells[c], q));
+            end.elastic_strain  = start.elastic_strain;
+            if (bone.stores_fabric())
+              {
+                // As it would be had the material not turned
+                const auto  *G = forces.step_geometry().gradients(cells[c], q);
+                Tensor<2, 3> f(unit_symmetric_tensor<3>());
+                for (unsigned int k = 0; k < dofs.size(); ++k)
+                  {
+                    const auto [d, a] = fe.system_to_component_index(k);
+                    for (unsigned int e = 0; e < dim; ++e)
+                      f[d][e] += equilibrium.increment(dofs[k]) * G[a][e];
+                  }
+                end.log_fabric = rotate(transpose(polar(f).R), end.log_fabric);
+              }
+            summary.energy +=
+              0.5 * weight *
+              (after[i] - before[i] + bone.energy(end) - bone.energy(start));
+          }
+        ++c;
+      }
+    const MPI_Comm communicator = state.configuration.communicator();
+    for (double *sum :
+         {&summary.energy, &summary.stored, &summary.stored_moved})
+      *sum = Utilities::MPI::sum(*sum, communicator);
+  }
+
+
+
+  template <int dim>
   double
   StaggeredStep<dim>::feed_back()
   {
@@ -206,7 +308,11 @@ namespace alveolus
     if (verdict.repeats() || !active)
       return verdict;
     const double dt = interval.end - interval.begin;
-    remodelling     = remodel(dt);
+    // By point, before remodelling and as the last equilibrium left them
+    std::vector<double> before, seen;
+    if (booked)
+      before = seen = point_energies(state.history.trial_values);
+    remodelling = remodel(dt);
 
     if (parameters.coupling == "iterated")
       {
@@ -230,15 +336,26 @@ namespace alveolus
               {
                 verdict = {Verdict::Kind::repeat,
                            "mechanics and remodelling did not agree in " +
-                             std::to_string(n - 1) + " iterations"};
+                             std::to_string(n - 1) + " iterations",
+                           "coupling"};
                 break;
               }
             change = feed_back();
             EquilibriumReport again;
             verdict = equilibrium.solve(interval, again);
-            mechanics.n_iterations += again.n_iterations;
+            again.n_iterations += mechanics.n_iterations;
+            again.n_line_search += mechanics.n_line_search;
+            again.n_linear_iterations += mechanics.n_linear_iterations;
+            again.n_augmentations += mechanics.n_augmentations;
+            again.n_direct_instead += mechanics.n_direct_instead;
+            again.linear_residual =
+              std::max(again.linear_residual, mechanics.linear_residual);
+            again.imbalance = mechanics.imbalance;
+            mechanics       = again;
             if (verdict.repeats())
               break;
+            if (booked)
+              seen = point_energies(history.trial_values);
             // Remodelling starts from the committed density and fabric, but
             // with the elastic strain of the new equilibrium.
             for (const unsigned int cell : cells)
@@ -264,23 +381,29 @@ namespace alveolus
                           first[fabric + i] - old[fabric + i];
                   }
               }
+            if (booked)
+              before = point_energies(history.trial_values);
             remodelling = remodel(dt);
         } while (remodelling.failure.empty() &&
                  change > parameters.coupling_tolerance);
         remodelling.n_coupling_iterations = n;
         if (verdict.repeats())
           return verdict;
+        if (booked)
+          balance(before, seen, &committed, remodelling);
       }
+    else if (booked)
+      balance(before, seen, nullptr, remodelling);
 
     if (!remodelling.failure.empty())
-      return {Verdict::Kind::repeat, remodelling.failure};
+      return {Verdict::Kind::repeat, remodelling.failure, "remodelling"};
     if (remodelling.largest_density_change > parameters.max_density_change)
       {
         std::ostringstream reason;
         reason << "density changed by " << remodelling.largest_density_change
                << " g/cc in a step, more than "
                << parameters.max_density_change;
-        return {Verdict::Kind::repeat, reason.str()};
+        return {Verdict::Kind::repeat, reason.str(), "density change"};
       }
     return verdict;
   }

@@ -41,6 +41,27 @@ namespace alveolus
   }
 
   double
+  OverlapReport::content_gained() const
+  {
+    return std::accumulate(regions.begin(),
+                           regions.end(),
+                           0.,
+                           [](const double sum, const Region &r) {
+                             return sum + (r.content_gained - r.content_lost);
+                           });
+  }
+
+  double
+  OverlapReport::largest_uncovered_part() const
+  {
+    double result = 0.;
+    for (const Region &region : regions)
+      if (region.volume_after > 0.)
+        result = std::max(result, region.uncovered / region.volume_after);
+    return result;
+  }
+
+  double
   OverlapReport::content_after() const
   {
     return std::accumulate(regions.begin(),
@@ -324,8 +345,33 @@ namespace alveolus
           r, new_centroid[target.cell * old.n_points + target.point]));
         std::copy(value, value + old.layouts[r].size, result);
       }
+    // What is lost is the old function where no new sub-cell is: where it is
+    // linear, its moments there, i.e. less what the gradients bring elsewhere.
+    const auto covered_content = [&]() {
+      std::vector<std::vector<double>> sums(old.layouts.size());
+      for (const Target &target : targets)
+        {
+          const unsigned int r      = new_store.region(target.cell);
+          const int          offset = old.layouts[r].offset(content_field);
+          if (offset >= 0 && !target.shares.empty())
+            sums[r].push_back(
+              target.covered *
+              new_store.old_record(target.cell, target.point)[offset]);
+        }
+      std::vector<double> result;
+      for (const auto &values : sums)
+        result.push_back(reproducible_sum(values, communicator));
+      return result;
+    };
+    std::vector<double> by_gradients(old.layouts.size(), 0.);
     if (second_order)
-      add_linear_part(targets, new_store);
+      {
+        const auto before = covered_content();
+        add_linear_part(targets, new_store);
+        by_gradients = covered_content();
+        for (unsigned int r = 0; r < before.size(); ++r)
+          by_gradients[r] -= before[r];
+      }
     report.n_limited = enforce_bounds(new_store);
     new_store.update_ghosts();
 
@@ -341,14 +387,42 @@ namespace alveolus
             volumes[r].back() *
             new_store.old_record(target.cell, target.point)[offset]);
       }
+    // Old sub-cells are known to all processes, the shares to those of the new
+    std::vector<double>              taken(old.n_cells() * old.n_points, 0.);
+    std::vector<std::vector<double>> gained(old.layouts.size());
+    for (const Target &target : targets)
+      {
+        const unsigned int r      = new_store.region(target.cell);
+        const int          offset = old.layouts[r].offset(content_field);
+        for (const Share<dim> &share : target.shares)
+          taken[share.old] += share.volume;
+        if (offset >= 0)
+          gained[r].push_back(
+            (new_volume[target.cell * old.n_points + target.point] -
+             (target.shares.empty() ? 0. : target.covered)) *
+            new_store.old_record(target.cell, target.point)[offset]);
+      }
+    Utilities::MPI::sum(taken, communicator, taken);
+    std::vector<std::vector<double>> lost(old.layouts.size());
+    for (unsigned int s = 0; s < taken.size(); ++s)
+      {
+        const unsigned int r      = old.region[s / old.n_points];
+        const int          offset = old.layouts[r].offset(content_field);
+        if (offset >= 0)
+          lost[r].push_back((overlap.volume(s) - taken[s]) *
+                            old.record(s)[offset]);
+      }
     for (unsigned int r = 0; r < old.layouts.size(); ++r)
       {
         OverlapReport::Region &region = report.regions[r];
-        region.volume_before          = old_volume[r];
-        region.content_before         = old_content[r];
-        region.volume_after  = reproducible_sum(volumes[r], communicator);
-        region.content_after = reproducible_sum(contents[r], communicator);
-        region.uncovered     = reproducible_sum(uncovered[r], communicator);
+        region.content_gained = reproducible_sum(gained[r], communicator);
+        region.content_lost =
+          reproducible_sum(lost[r], MPI_COMM_SELF) - by_gradients[r];
+        region.volume_before  = old_volume[r];
+        region.content_before = old_content[r];
+        region.volume_after   = reproducible_sum(volumes[r], communicator);
+        region.content_after  = reproducible_sum(contents[r], communicator);
+        region.uncovered      = reproducible_sum(uncovered[r], communicator);
         region.least_covered =
           Utilities::MPI::min(region.least_covered, communicator);
         if (region.uncovered > limits.uncovered * region.volume_after)

@@ -212,6 +212,7 @@ namespace alveolus
     cells.swept_volumes(x_old, x_new, work.swept);
     report.content_before = content(store, work.volume_before);
     const double whole    = donor_fraction();
+    report.swept_fraction = whole;
 
     // How much of the motion is done, as (part)/(parts): equal parts, halved
     // where one of them would still take too much from a sub-cell.

@@ -35,6 +35,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -61,7 +62,9 @@ namespace alveolus::fuzz
     {
       std::uint64_t at; ///< number of the input
       std::uint64_t accepted[5], refused[5];
-      std::uint64_t unmeshed[5]; ///< gmsh's double had no mesh of this outline
+      std::uint64_t unmeshed[5];  ///< gmsh's double had no mesh of this outline
+      double        slowest_time; ///< [s of processor time]
+      std::uint64_t slowest;      ///< number of that input
       char          problem[4000]; ///< of this input, if it ended by itself
     };
 
@@ -250,6 +253,9 @@ namespace alveolus::fuzz
               n += progress->accepted[k] + progress->refused[k] +
                    progress->unmeshed[k];
             }
+        std::cout << "slowest: input " << progress->slowest << ", from "
+                  << input(progress->slowest).first->name << ", "
+                  << progress->slowest_time << " s of processor time\n";
         std::cout << n << " of " << options.count
                   << " inputs ended as they should, " << n_failures
                   << " failures, seed " << options.seed << ", "
@@ -317,17 +323,21 @@ namespace alveolus::fuzz
                 program.scene = seed->scene;
                 program.sets.push_back(seed->parameter + "=" + file);
               }
-            const auto         before = std::chrono::steady_clock::now();
+            const std::clock_t before = std::clock();
             std::ostringstream message;
             set_time_limit(options.time_limit);
             const int code = run_program(program, MPI_COMM_WORLD, message);
             set_time_limit(0);
+            const double time =
+              static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+            if (time > progress->slowest_time)
+              {
+                progress->slowest_time = time;
+                progress->slowest      = i;
+              }
             if (options.verbose)
               std::cerr << i << ' ' << seed->name << ": " << code << ", "
-                        << std::chrono::duration<double>(
-                             std::chrono::steady_clock::now() - before)
-                             .count()
-                        << " s " << message.str() << std::endl;
+                        << time << " s " << message.str() << std::endl;
             const auto k = static_cast<unsigned int>(seed->kind);
             if (code == 0)
               ++progress->accepted[k];

@@ -47,8 +47,8 @@ mesh='Mesh/tooth in block'
 for fault in 'no-such-program 2 could not be started' \
   'crash 1 crashed by signal 11' 'hang 1 did not end within its time limit'; do
   read -r name code message <<<"$fault"
-  expect "$code" "the mesher.*$message|'$name' $message" --output "$work/start" \
-    --set "$mesh/Mesher program=$name" --set "$mesh/Mesher time limit=0.5" \
+  ALVEOLUS_MESHER=$name expect "$code" "the mesher '$name' $message" \
+    --output "$work/start" --set "$mesh/Mesher time limit=0.5" \
     --validate prm/academic.prm
 done
 

@@ -308,6 +308,25 @@ TEST(Resume, AgainAndAgain)
 
 
 
+// A checkpoint between two rezonings remembers where rules count from.
+TEST(Resume, RezonedEveryThirdStep)
+{
+  const Sets sets = academic + Sets{"Time/End=7", "Rezoning/Every steps=3"};
+  const std::string full = new_folder("full");
+  EXPECT_TRUE(start<2>("academic", sets, full));
+  for (const unsigned int row : {2, 3, 4})
+    {
+      const std::string cut = new_folder("cut");
+      EXPECT_FALSE(start<2>("academic", sets, cut, row));
+      EXPECT_EQ(read_checkpoint(cut, MPI_COMM_WORLD).has("rezoning/start"),
+                row != 3);
+      EXPECT_TRUE(resume<2>(cut, cut));
+      expect_same(full + "/history.csv", cut + "/history.csv");
+    }
+}
+
+
+
 // Before, between and after remeshes; the third one begins the run.
 TEST(Resume, BeforeAndAfterRemeshes)
 {

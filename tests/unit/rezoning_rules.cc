@@ -468,6 +468,48 @@ TEST(Rules, GiulianiRespectsInterfacesAndOtherRules)
     }
 }
 
+template <int dim>
+void
+giuliani_accelerated(const unsigned int n)
+{
+  // Sheared: an affine image of the mesh at attach is what both end at.
+  const Bench<dim> bench(unit_mesh<dim>(n), 1);
+  const Map<dim>   sheared = [](const Point<dim> &X) {
+    Point<dim> x = X;
+    x[0] += 0.5 * X[1];
+    return x;
+  };
+  const auto                  lagrangian = bench.map([&](const Point<dim> &X) {
+    return sheared(perturbed<dim>(0.2 / n, 1)(X));
+  });
+  std::array<unsigned int, 2> sweeps;
+  for (unsigned int k = 0; k < 2; ++k)
+    {
+      Rezoning<dim> run(bench);
+      run.add("Giuliani",
+              {{"On", "all"},
+               {"Tolerance", "1e-10"},
+               {"Iteration", k == 0 ? "Jacobi" : "Chebyshev"},
+               {"Largest number of sweeps", "5000"}});
+      const auto x = run(bench.initial, bench.initial, lagrangian);
+      EXPECT_EQ(run.report.unconverged_rules, 0u);
+      EXPECT_LT(bench.distance(x, sheared), 1e-8);
+      sweeps[k] = run.report.sweeps;
+    }
+  EXPECT_LT(3 * sweeps[1], sweeps[0]);
+}
+
+TEST(Rules, GiulianiIsAcceleratedByChebyshev)
+{
+  giuliani_accelerated<2>(20);
+  giuliani_accelerated<3>(12);
+  const Bench<2> bench(unit_mesh<2>(4), 1);
+  Rezoning<2>    run(bench);
+  run.add("Giuliani",
+          {{"On", "all"}, {"Shapes", "equal"}, {"Iteration", "Chebyshev"}});
+  EXPECT_THROW(run(bench.initial, bench.initial, bench.initial), InputError);
+}
+
 TEST(Rules, GiulianiCountsWhenItDoesNotConverge)
 {
   const Bench<2> bench(unit_mesh<2>(8), 1);

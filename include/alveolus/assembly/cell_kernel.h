@@ -69,8 +69,22 @@ namespace alveolus
              dealii::FullMatrix<double>   *matrix,
              dealii::Vector<double>       &forces);
 
-    /** Stored energy of the cell in the last evaluate() [mJ (per mm)]. */
-    double energy = 0.;
+    // Of the cell in the last evaluate() [mJ (per mm)]:
+    double energy = 0.; ///< stored
+    /**
+     * The same with the undeformed volumes that the points have on the moved
+     * mesh. Mean dilatation shifts them within a cell, since J changes by theta
+     * where the mesh changes by det f.
+     */
+    double energy_moved = 0.;
+    double dissipation  = 0.; ///< plastic work of the increment
+
+    /** Undeformed volume of a point on the moved mesh, dv/J [mm^dim]. */
+    double
+    moved_weight(const unsigned int point) const
+    {
+      return points[point].weight * points[point].det / points[point].theta;
+    }
 
   private:
     struct Point

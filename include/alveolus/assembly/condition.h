@@ -78,6 +78,19 @@ namespace alveolus
   /** The scene's interface laws by name. */
   using InterfaceLaws = std::map<std::string, std::unique_ptr<InterfaceLaw>>;
 
+  /**
+   * Where the work goes that a body does on the mesh through a layer that is
+   * not meshed, in a step, by the trapezoidal rule; of the owned faces [mJ (per
+   * mm)].
+   */
+  struct LayerWork
+  {
+    double by_body       = 0.; ///< of the body's forces along its motion
+    double on_boundary   = 0.; ///< of the layer's forces along the boundary's
+    double stored_before = 0.; ///< in the layer, on the area of x_n
+    double stored_after  = 0.;
+  };
+
   /** A named number for the history file. */
   using Recorded = std::pair<std::string, double>;
 
@@ -170,6 +183,38 @@ namespace alveolus
     virtual void
     commit()
     {}
+
+    // For the books of energy:
+    /** True if bodies of the mesh exert its forces on each other. */
+    virtual bool
+    is_contact() const
+    {
+      return false;
+    }
+    /** True if the forces are those of a layer that stores energy. */
+    virtual bool
+    is_layer() const
+    {
+      return false;
+    }
+    /** Keep the forces of the last add_forces() as those at t_n. */
+    virtual void
+    begin_work()
+    {}
+    /** Of a layer: the work since begin_work(), up to the last add_forces(). */
+    virtual LayerWork
+    layer_work(const State<dim> & /*state*/,
+               const NodalVector & /*increment*/) const
+    {
+      return {};
+    }
+    /** Of a layer: what its committed jumps store on the mesh now; owned faces.
+     */
+    virtual double
+    stored_energy(const State<dim> & /*state*/) const
+    {
+      return 0.;
+    }
 
     /** History on the condition's boundary, to be moved by rezoning; or null.
      */

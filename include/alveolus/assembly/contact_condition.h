@@ -36,6 +36,11 @@ namespace alveolus
     augment(const State<dim> &state, const NodalVector &increment) override;
     void
     commit() override;
+    bool
+    is_contact() const override
+    {
+      return true;
+    }
     void
     save(const PortableFields<dim> &fields,
          const std::string         &prefix,

@@ -20,6 +20,9 @@ namespace alveolus
     /** Sum of |internal force| over all dofs of all cells [N (per mm)]. */
     double force_scale = 0.;
     double energy      = 0.; ///< stored energy [mJ (per mm)]
+    /** The same with the weights of the moved mesh, see CellKernel. */
+    double energy_moved = 0.;
+    double dissipation  = 0.; ///< plastic work of the increment [mJ (per mm)]
   };
 
   /**
@@ -52,6 +55,17 @@ namespace alveolus
     /** Internal forces alone of the last assembly, per dof [N (per mm)]. */
     NodalVector internal_forces;
 
+    /** From now on every assembly leaves moved_weight(). */
+    void
+    keep_moved_weights();
+
+    /** Of the last assembly, see CellKernel; for owned cells [mm^dim]. */
+    double
+    moved_weight(const unsigned int cell, const unsigned int point) const
+    {
+      return moved_weights[cell * geometry.n_points + point];
+    }
+
     const StepGeometry<dim> &
     step_geometry() const
     {
@@ -72,6 +86,7 @@ namespace alveolus
     StepGeometry<dim>          geometry;
     std::vector<unsigned int>  cells;      ///< active indices of owned cells
     std::vector<unsigned int>  local_dofs; ///< of these cells, in a NodalVector
+    std::vector<double>        moved_weights; ///< empty unless asked for
   };
 } // namespace alveolus
 

@@ -48,6 +48,18 @@ namespace alveolus
                const AssemblyTarget &target) override;
     void
     commit() override;
+    bool
+    is_layer() const override
+    {
+      return law != nullptr;
+    }
+    void
+    begin_work() override;
+    LayerWork
+    layer_work(const State<dim>  &state,
+               const NodalVector &increment) const override;
+    double
+    stored_energy(const State<dim> &state) const override;
     FaceHistory<dim> *
     face_history() override
     {
@@ -85,6 +97,7 @@ namespace alveolus
       double               weight = 0.;
       dealii::Tensor<1, 3> normal;
       dealii::Point<dim>   x;
+      dealii::Tensor<1, 3> traction; ///< on the boundary, last add_forces()
     };
     struct LoadedFace
     {
@@ -111,6 +124,12 @@ namespace alveolus
     Interval                                   step;
     dealii::Tensor<1, 3>                       force, moment; ///< last assembly
     double smallest_strain = 0., largest_strain = 0., largest_shear = 0.;
+
+    /** Stored in the layer by the last add_forces(), owned [mJ (per mm)]. */
+    double stored = 0.;
+    /** Of begin_work(), in the order of faces and points. */
+    std::vector<dealii::Tensor<1, 3>> tractions_before;
+    double                            stored_before = 0.;
   };
 } // namespace alveolus
 

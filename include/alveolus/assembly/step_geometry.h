@@ -21,7 +21,9 @@ namespace alveolus
   public:
     explicit StepGeometry(const Configuration<dim> &configuration);
 
-    /** Take the configuration's mesh as it is now. @throws RunError if inverted
+    /**
+     * Take the configuration's mesh as it is now, if it has changed.
+     * @throws RunError if inverted
      */
     void
     update();
@@ -52,10 +54,11 @@ namespace alveolus
     const unsigned int            n_nodes; ///< scalar shape functions of a cell
 
   private:
-    const Configuration<dim>           &configuration;
+    const Configuration<dim> &configuration;
     std::vector<unsigned int>           slot; ///< of each active cell, if owned
     std::vector<dealii::Tensor<1, dim>> all_gradients;
     std::vector<double>                 all_weights;
+    std::vector<double>                 known; ///< mesh displacement of these
   };
 } // namespace alveolus
 

@@ -22,6 +22,7 @@ namespace alveolus
 
     Kind        kind = Kind::advance;
     std::string reason; ///< for the log, empty if the step is accepted
+    std::string cause;  ///< of a repetition, in few words, to count it by
 
     bool
     repeats() const

@@ -50,6 +50,15 @@ namespace alveolus
   };
 
   /**
+   * Refuse to write where something else than a file (or, if @p folder, than a
+   * folder) has the name: through a link planted in an output folder results
+   * would go elsewhere and spoil what is there, and a pipe would never answer.
+   * @throws InputError if there is such a thing; not if there is nothing
+   */
+  void
+  require_plain(const std::string &name, const bool folder = false);
+
+  /**
    * Wait until the content of the file or folder @p name is on the disk.
    * @return 0, or the error number
    */

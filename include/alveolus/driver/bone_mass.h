@@ -39,16 +39,24 @@ namespace alveolus
     book_transfer(const State<dim> &state, const TransferReport &report);
 
     /**
-     * Go on with the books of the old mesh after a remesh. What the remesh
-     * changed is not explained: it stays in the balance.
+     * Go on with the books of the old mesh after a remesh, in equilibrium on
+     * the new mesh. What the transfer does beyond the change of outlines is not
+     * explained: it stays in the balance.
+     * @param gained      by the change of outlines, OverlapReport
+     * @param transferred mass after the transfer, before the equilibrium was
+     *        sought; the density does not change then, so that the rest is the
+     *        change of volume
      */
     void
-    take_over(const BoneMass &old)
+    take_over(const BoneMass &old,
+              const double    gained,
+              const double    transferred)
     {
       initial          = old.initial;
       by_remodelling   = old.by_remodelling;
-      by_volume_change = old.by_volume_change;
+      by_volume_change = old.by_volume_change + (mass - transferred);
       through_boundary = old.through_boundary;
+      by_remeshing     = old.by_remeshing + gained;
     }
 
     /** Into and from blocks "bone mass/..." of a checkpoint (collective). */
@@ -62,13 +70,14 @@ namespace alveolus
     double by_remodelling   = 0.; ///< all cumulative
     double by_volume_change = 0.;
     double through_boundary = 0.;
+    double by_remeshing     = 0.; ///< at outlines of new meshes
 
     /** What is not explained, relative to the initial mass. */
     double
     balance() const
     {
       return (mass - initial - by_remodelling - by_volume_change -
-              through_boundary) /
+              through_boundary - by_remeshing) /
              initial;
     }
 

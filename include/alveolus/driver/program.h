@@ -22,6 +22,7 @@ namespace alveolus
     bool validate         = false; ///< make and check everything, solve nothing
     bool quiet            = false;
     bool accept           = false; ///< changed settings when resuming
+    bool allow_scripts    = false; ///< a mesh file may be a script of gmsh
   };
 
   /**

@@ -4,7 +4,9 @@
 
 #include <alveolus/base/whole_file.h>
 #include <alveolus/driver/bone_mass.h>
+#include <alveolus/driver/energy_books.h>
 #include <alveolus/driver/model.h>
+#include <alveolus/driver/state_check.h>
 #include <alveolus/io/checkpoint.h>
 #include <alveolus/io/field_writer.h>
 #include <alveolus/io/history_file.h>
@@ -83,13 +85,22 @@ namespace alveolus
       unsigned int steps = 0, rejected = 0, iterations = 0;
       unsigned int limited = 0, cut_back = 0, subcycles = 0;
       unsigned int unconverged_rezonings    = 0;
+      unsigned int skipped_rezonings        = 0;
+      unsigned int quality_warnings         = 0;
       unsigned int max_iterations_of_a_step = 0;
       double       smallest_quality         = 1.;
       double       largest_transfer_error   = 0.;
+      unsigned int most_beyond_bounds       = 0; ///< points, of a step
     };
 
     Verdict
     attempt(const Interval &interval);
+    /**
+     * Count, and say in the log, what of the committed history is beyond its
+     * bounds. @throws RunError if it is garbage
+     */
+    void
+    check_committed(const Model<dim> &checked);
     Verdict
     judge_corners(const Model<dim> &candidate) const;
     void
@@ -98,6 +109,25 @@ namespace alveolus
     rezone(Model<dim>        &rezoned_model,
            const NodalVector &start,
            const bool         booked);
+
+    // simulation_steps.cc:
+    /** Reject what takes too much of the quality of the mesh. */
+    Verdict
+    judge_quality(const QualitySummary<dim> &candidate) const;
+    /** Choose the next step by what was measured in the one of length @p dt. */
+    void
+    choose_next_step(const double dt);
+    /** A line in the log when the quality has fallen below the bound. */
+    void
+    warn_of_quality();
+    /**
+     * Rezone if the plan asks for it; else remember where the mesh was, since
+     * rules count from the last rezoning.
+     * @param start positions before the step
+     */
+    void
+    rezone_if_due(const NodalVector &start);
+
     /** What became of one candidate of a remesh. */
     struct Remeshed
     {
@@ -216,7 +246,9 @@ namespace alveolus
     std::unique_ptr<RemeshPlan>  remesh_plan;
     std::unique_ptr<HistoryFile> remesh_file;
     // Present only where some region has a density:
-    std::unique_ptr<BoneMass<dim>> bone_mass;
+    std::unique_ptr<BoneMass<dim>>    bone_mass;
+    StateFindings                     findings;     ///< of the present history
+    std::unique_ptr<EnergyBooks<dim>> energy_books; ///< null if not asked for
     // Present only where some region has a reference map:
     std::unique_ptr<ReferenceOutline<dim>> reference_outline;
     std::vector<double> reference_volumes; ///< of the undeformed regions
@@ -229,9 +261,13 @@ namespace alveolus
     double                            next_field_time = 0.;
     double                            last_field_time = -1.;
 
-    EquilibriumReport   mechanics_report;
-    RemodellingSummary  remodelling_report;
-    RezoningReport      rezoning_report;
+    EquilibriumReport  mechanics_report;
+    RemodellingSummary remodelling_report;
+    RezoningReport     rezoning_report;
+    double             swept_fraction = 0.; ///< of the last step's transfer
+    /** Positions after the last rezoning, if steps were not rezoned since. */
+    std::unique_ptr<NodalVector> rezoning_start;
+    bool                quality_is_low = false; ///< and the log has told it
     QualitySummary<dim> quality;
     unsigned int        rejected_attempts = 0; ///< of the current step
     Totals              totals;

@@ -96,6 +96,13 @@ namespace alveolus
       return scale * growth * law.slope(alpha + growth * d);
     }
 
+    /** Plastic work of the increment, its integral from 0 to d (Simpson). */
+    double
+    work(const double d) const
+    {
+      return d / 6. * (value(0.) + 4. * value(0.5 * d) + value(d));
+    }
+
     /**
      * Radial return: the d > 0 with q - stiffness d = value(d), where q >
      * value(0). Newton's method within a bracket; linear hardening takes one

@@ -38,6 +38,12 @@ namespace alveolus
      * tangent is only asked for k, l < 2 and for k = l = 2.
      */
     bool plane_strain = false;
+
+    /**
+     * Plastic work lost in the increment, per volume of the undeformed material
+     * [MPa]. The caller sets it to zero; laws without dissipation leave it.
+     */
+    double dissipation = 0.;
   };
 
   /**

@@ -12,13 +12,21 @@ namespace alveolus
   /** How the mesher is run; parameters shared by all that need it. */
   struct GmshSettings
   {
-    std::string program    = "gmsh";
-    double      time_limit = 120.; ///< [s]
+    double time_limit = 120.; ///< [s]
 
     /** Add the parameters to the current subsection. */
     void
     declare_parameters(dealii::ParameterHandler &prm);
   };
+
+  /**
+   * The program that is started as gmsh: what the environment variable
+   * `ALVEOLUS_MESHER` names, else "gmsh"; searched for in PATH if it holds no
+   * slash. No parameter can name it: a parameter file or a checkpoint from
+   * somebody else must not choose what is run here.
+   */
+  std::string
+  mesher_program();
 
   /**
    * Let gmsh make a @p dim dimensional mesh of the geometry script

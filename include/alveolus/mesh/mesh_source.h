@@ -49,7 +49,23 @@ namespace alveolus
       largest_number_of_cells = n;
     }
 
+    /**
+     * Whether a script of the user's may be run to make the mesh. By default
+     * not: gmsh's language can start programs and write files.
+     */
+    void
+    allow_scripts(const bool yes)
+    {
+      scripts_allowed = yes;
+    }
+
   protected:
+    bool
+    may_run_scripts() const
+    {
+      return scripts_allowed;
+    }
+
     /**
      * For implementations, to be called before memory is taken.
      * @param n_cells as far as it is known, a product may be huge
@@ -77,6 +93,7 @@ namespace alveolus
 
   private:
     unsigned int largest_number_of_cells = 10000000;
+    bool         scripts_allowed         = false;
   };
 } // namespace alveolus
 

@@ -21,12 +21,14 @@ namespace alveolus
     struct Parameters
     {
       std::vector<double> times;
-      unsigned int        every          = 0;
-      double              below_quality  = -1.;
-      double              accept_quality = 0.3;
-      bool                after_failure  = true;
-      unsigned int        max_remeshes   = 1000;
-      unsigned int        max_halvings   = 8;
+      unsigned int        every                 = 0;
+      double              below_quality         = 0.2;
+      double              accept_quality        = 0.3;
+      std::string         if_none_is_acceptable = "stop";
+      bool                after_failure         = true;
+      unsigned int        max_remeshes          = 1000;
+      unsigned int        max_halvings          = 8;
+      double              uncovered_part        = 0.02;
 
       void
       declare(dealii::ParameterHandler &prm);

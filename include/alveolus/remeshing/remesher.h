@@ -55,6 +55,13 @@ namespace alveolus
       return 2;
     }
 
+    /** False if no region of the new meshes is a lattice, whatever is asked. */
+    virtual bool
+    can_keep_lattices() const
+    {
+      return true;
+    }
+
     /**
      * What it decides by, "strain energy" or "density"; empty: nothing. Then
      * tell() comes before candidates().

@@ -94,6 +94,18 @@ namespace alveolus
                 const LocalNode     &vertex,
                 std::vector<Corner> &around) const;
 
+    /** Gather the weights of each neighbour of a vertex, and find the smallest
+     * eigenvalue of I minus their matrix (collective). */
+    void
+    prepare_chebyshev(const NodalVector &positions);
+
+    /** Chebyshev's semi-iteration instead of Jacobi sweeps; whether it has
+     * converged. */
+    bool
+    accelerated(const MPI_Comm &communicator,
+                NodalVector    &proposed,
+                RezoningReport &report) const;
+
     /** New place of vertex @p v by its corners, and the local size. */
     std::pair<dealii::Point<dim>, double>
     target(const NodalVector &positions, const unsigned int v) const;
@@ -101,6 +113,7 @@ namespace alveolus
     std::vector<std::string> on;
     std::string              shapes         = "initial";
     bool                     equalise       = false; ///< shapes == "equal"
+    std::string              iteration      = "Jacobi";
     double                   tolerance      = 1e-4;
     double                   relaxation     = 0.7;
     unsigned int             largest_sweeps = 500;
@@ -108,6 +121,10 @@ namespace alveolus
     std::vector<LocalNode>    vertices;
     std::vector<unsigned int> first_corner; ///< of each vertex, and the end
     std::vector<Corner>       corners;
+    /** For Chebyshev: neighbours of each vertex with their weights in all. */
+    std::vector<unsigned int>                 first_link;
+    std::vector<std::pair<double, LocalNode>> links;
+    double smallest_eigenvalue = 0., largest_eigenvalue = 2.;
     /** On lines, faces (3D) and inside cells, in this order. */
     std::array<std::vector<MiddleNode>, dim> middles;
     std::vector<NodeId>                      touched;

@@ -92,6 +92,13 @@ namespace alveolus
           NodalVector       &proposed,
           RezoningReport    &report) const = 0;
 
+    /** Whether the cells of its regions must form lattices. */
+    virtual bool
+    needs_lattices() const
+    {
+      return false;
+    }
+
     /**
      * Nodes this rule sets, without those taken by earlier stages; on each
      * process at least its own ones.

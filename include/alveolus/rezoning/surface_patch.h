@@ -44,15 +44,17 @@ namespace alveolus
     harmonic(const std::vector<Place> &held) const;
 
     /**
-     * Move free nodes of @p x onto the surface through @p surface: the place of
-     * each is written in the frame of the nearest node of the surface, where
-     * the latter is h(t) = g t + t K t / 2 over the tangent plane, fitted
-     * through the nodes of two rings of quadrilaterals around. On planes exact,
-     * otherwise with an error of third order in the distance of nodes, which
-     * vanishes with the way of a node along the surface.
+     * Move the @p wanted nodes of @p x, free ones, onto the surface through @p
+     * surface: the place of each is written in the frame of the nearest node of
+     * the surface, where the latter is h(t) = g t + t K t / 2 over the tangent
+     * plane, fitted through the nodes of two rings of quadrilaterals around. On
+     * planes exact, otherwise with an error of third order in the distance of
+     * nodes, which vanishes with the way of a node along the surface.
      */
     void
-    project(const std::vector<Place> &surface, std::vector<Place> &x) const;
+    project(const std::vector<Place> &surface,
+            const std::vector<bool>  &wanted,
+            std::vector<Place>       &x) const;
 
     std::vector<NodeId> nodes;   ///< ascending
     std::vector<bool>   is_free; ///< of each node
@@ -78,9 +80,11 @@ namespace alveolus
 
     std::vector<std::array<unsigned int, 4>> quads; ///< lexicographic
     std::vector<std::vector<unsigned int>>   ring;  ///< nodes in common quads
-    std::vector<Place>                       initial;
-    CsrMatrix                                matrix;
-    std::unique_ptr<Umfpack>                 factors;
+    /** Quadrilaterals at each node, each with the place of the node in it. */
+    std::vector<std::vector<std::pair<unsigned int, unsigned int>>> corners;
+    std::vector<Place>                                              initial;
+    CsrMatrix                                                       matrix;
+    std::unique_ptr<Umfpack>                                        factors;
   };
 } // namespace alveolus
 

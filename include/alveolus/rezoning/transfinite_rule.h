@@ -51,6 +51,11 @@ namespace alveolus
           const NodalVector &lagrangian,
           NodalVector       &proposed,
           RezoningReport    &report) const override;
+    bool
+    needs_lattices() const override
+    {
+      return true;
+    }
     const std::vector<NodeId> &
     touched_nodes() const override
     {

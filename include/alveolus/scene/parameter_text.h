@@ -5,6 +5,7 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <iosfwd>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -77,11 +78,16 @@ namespace alveolus
 
     /**
      * Set every entry in @p prm, whose declarations must be complete.
+     * @param problems found before, told together with those found here
+     * @param unknown sections "Section/member" whose entries are passed over,
+     *        since their Type is among these problems
      * @throws InputError with one line for each undeclared entry or section
      *         and each value that does not match its pattern
      */
     void
-    apply(dealii::ParameterHandler &prm) const;
+    apply(dealii::ParameterHandler    &prm,
+          std::vector<std::string>     problems = {},
+          const std::set<std::string> &unknown  = {}) const;
 
     std::string        file_name;
     std::vector<Entry> entries;
@@ -100,6 +106,11 @@ namespace alveolus
                     const std::string        &name,
                     std::vector<std::string> &open_files,
                     std::vector<std::string> &problems);
+
+    /** More included files than this are a mistake. */
+    static constexpr unsigned int most_files = 1000;
+
+    unsigned int n_files = 0;
   };
 
   /** Folder part of a file name, "." if there is none. */

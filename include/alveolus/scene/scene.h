@@ -9,6 +9,7 @@
 #include <alveolus/remeshing/remesh_plan.h>
 #include <alveolus/remeshing/remesher.h>
 #include <alveolus/rezoning/rezoner.h>
+#include <alveolus/rezoning/rezoning_plan.h>
 #include <alveolus/scene/accuracy.h>
 #include <alveolus/scene/parameter_text.h>
 #include <alveolus/solver/staggered_step.h>
@@ -77,6 +78,8 @@ namespace alveolus
     typename Equilibrium<dim>::Parameters   solver;
     typename StaggeredStep<dim>::Parameters coupling;
 
+    RezoningPlan rezoning_plan;
+
     std::string transfer_scheme        = "Godunov";
     double      largest_donor_fraction = 0.5;
 
@@ -86,6 +89,8 @@ namespace alveolus
 
     std::string inverted_corners = "stop";
     double      minimum_quality  = -1.;
+    bool        energy_balance   = true;
+    double      warn_quality     = 0.3;
 
     StepControl::Parameters time;
 
@@ -138,9 +143,15 @@ namespace alveolus
     std::vector<Named<Interface>>
     make_collection(const std::string &section);
 
+    /** References between parts: every problem. @throws InputError */
+    void
+    check_parts();
+
     const ParameterText             &all_statements;
     AccuracyLevels                   accuracy_levels;
-    const ParameterText             &text; ///< of the chosen level
+    const ParameterText             &text;     ///< of the chosen level
+    std::vector<std::string>         problems; ///< until all is declared
+    std::set<std::string>            unknown;  ///< parts of unknown types
     dealii::ParameterHandler         prm;
     std::vector<Named<InterfaceLaw>> interface_law_list;
   };

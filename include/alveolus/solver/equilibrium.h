@@ -26,6 +26,9 @@ namespace alveolus
     /** Iterations after the one that was expected to be the last. */
     unsigned int n_late_matrices = 0;
     double       energy          = 0.; ///< stored [mJ (per mm)]
+    double       energy_moved    = 0.; ///< on the moved mesh, see CellKernel
+    double dissipation = 0.; ///< plastic work of the increment [mJ (per mm)]
+    double force_scale = 0.; ///< see AssemblyResult
     /** L1 norm of the residual before the step over the internal forces. */
     double imbalance = 0.;
   };
@@ -90,6 +93,21 @@ namespace alveolus
     Imbalance
     imbalance(const double t, double &relative);
 
+    /**
+     * Assemble the forces of the committed state under the loads of its time:
+     * where the work of a step begins. They are in assembly().internal_forces
+     * and residual() until the next solve().
+     */
+    AssemblyResult
+    assemble_committed();
+
+    /** Whether a condition prescribes this dof, or it hangs. */
+    bool
+    is_held(const dealii::types::global_dof_index dof) const
+    {
+      return held.is_constrained(dof);
+    }
+
     NodalVector increment; ///< du [mm], ghosted
 
     /** Internal minus external forces at the solution: reactions [N (per mm)].
@@ -104,6 +122,13 @@ namespace alveolus
     assembly() const
     {
       return assembler;
+    }
+
+    /** See MechanicsAssembler. */
+    void
+    keep_moved_weights()
+    {
+      assembler.keep_moved_weights();
     }
 
     bool

@@ -17,6 +17,15 @@ namespace alveolus
     unsigned int n_at_upper_bound       = 0;
     unsigned int n_coupling_iterations  = 0;
     std::string  failure; ///< why a point could not be integrated, if any
+
+    // Where the books of energy are kept [mJ (per mm)]:
+    /** Change of the stored energy by density and fabric at fixed strain. */
+    double energy = 0.;
+    /**
+     * Stored at the end less stored by the last equilibrium, with the weights
+     * of the mesh x_n and of the moved one.
+     */
+    double stored = 0., stored_moved = 0.;
   };
 
   /** The remodelling of one region: null pointers where there is none. */
@@ -56,6 +65,10 @@ namespace alveolus
                   const Parameters                     &parameters,
                   dealii::TimerOutput                  &timer);
 
+    /** From now on tell what remodelling does to the stored energy. */
+    void
+    book_energy();
+
     /** Solve the step; the trial history holds the result. */
     Verdict
     solve(const Interval     &interval,
@@ -72,13 +85,27 @@ namespace alveolus
      */
     double
     feed_back();
+    /** Stored energy per undeformed volume of all points of `cells` [MPa]. */
+    std::vector<double>
+    point_energies(const std::vector<double> &values) const;
+    /**
+     * Fill the energies of @p summary.
+     * @param before  of the trial records before remodelling
+     * @param seen    of the trial records as the last equilibrium left them
+     * @param iterated history at t_n, if coupling is iterated
+     */
+    void
+    balance(const std::vector<double> &before,
+            const std::vector<double> &seen,
+            const std::vector<double> *iterated,
+            RemodellingSummary        &summary) const;
 
     State<dim>                           &state;
     Equilibrium<dim>                     &equilibrium;
     const std::vector<RegionRemodelling> &laws;
     const Parameters                     &parameters;
     dealii::TimerOutput                  &timer;
-    bool                                  active = false;
+    bool                                  active = false, booked = false;
     std::vector<unsigned int>             cells; ///< owned, remodelled
     std::unique_ptr<HelmholtzFilter<dim>> filter;
   };

@@ -6,13 +6,25 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
 namespace alveolus
 {
+  /** A quantity of a step that is to stay below a bound. */
+  struct StepLimit
+  {
+    std::string cause; ///< what it is, in few words
+    double      measured;
+    double      allowed; ///< 0: no limit
+  };
+
   /**
    * Length of the time steps: cut after a rejected attempt, grown again after
-   * easy steps, shortened to hit given times exactly.
+   * easy steps, shortened to hit given times exactly. Quantities that go with
+   * the length of a step limit the next one before an attempt has to be
+   * rejected.
    */
   class StepControl
   {
@@ -26,6 +38,12 @@ namespace alveolus
       double       cut_factor      = 0.5;
       double       growth_factor   = 1.5;
       unsigned int easy_iterations = 6;
+      /** Part of a sub-cell's volume that rezoning sweeps in a step. */
+      double largest_swept_fraction = 10.;
+      /** Of the smallest scaled Jacobian, by the motion of the material. */
+      double largest_quality_loss = 0.5;
+      /** Largest change of density in a step to aim at [g/cc]; 0: none. */
+      double wanted_density_change = 0.;
 
       void
       declare(dealii::ParameterHandler &prm);
@@ -40,16 +58,37 @@ namespace alveolus
     double
     next(const double time, const double stop) const;
 
-    /** The attempt of length @p attempted was accepted. */
-    void
-    accepted(const double attempted, const unsigned int n_iterations);
+    /**
+     * The attempt of length @p attempted was accepted. The next one is to be so
+     * long that no limit is passed if the quantities grow in proportion, but
+     * not shorter than the minimum.
+     * @return what limits it, with numbers, for the log; empty if nothing does
+     */
+    std::string
+    accepted(const double                  attempted,
+             const unsigned int            n_iterations,
+             const std::vector<StepLimit> &limits = {});
+
+    /** Number of accepted steps whose next one was limited, by cause. */
+    const std::map<std::string, unsigned int> &
+    limited() const
+    {
+      return n_limited;
+    }
+
+    /** Number of rejected attempts by cause. */
+    const std::map<std::string, unsigned int> &
+    rejections() const
+    {
+      return n_rejected;
+    }
 
     /**
      * The attempt was rejected: cut. @return false if the step would fall below
      * its minimum
      */
     bool
-    rejected(const double attempted);
+    rejected(const double attempted, const std::string &cause = "other");
 
     /** Begin again with the first step, e.g. on a new mesh. */
     void
@@ -68,8 +107,9 @@ namespace alveolus
     }
 
   private:
-    const Parameters &parameters;
-    double            dt;
+    const Parameters                   &parameters;
+    double                              dt;
+    std::map<std::string, unsigned int> n_limited, n_rejected;
   };
 } // namespace alveolus
 

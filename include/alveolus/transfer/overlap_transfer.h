@@ -27,6 +27,12 @@ namespace alveolus
       double least_covered  = 1.;
       double content_before = 0.;
       double content_after  = 0.;
+      /** What the parts of the new region that no old sub-cell covers have, and
+       * what those of the old one had that no new one covers. So content_after
+       * = content_before + gained - lost but for round-off and for values
+       * brought back into bounds. */
+      double content_gained = 0.;
+      double content_lost   = 0.;
     };
 
     std::vector<Region> regions;
@@ -46,6 +52,12 @@ namespace alveolus
     content_before() const;
     double
     content_after() const;
+    /** Of all regions, what is gained less what is lost at outlines. */
+    double
+    content_gained() const;
+    /** Largest uncovered part of a region's volume. */
+    double
+    largest_uncovered_part() const;
   };
 
   /**

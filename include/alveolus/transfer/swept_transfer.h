@@ -15,6 +15,11 @@ namespace alveolus
   struct TransferReport
   {
     unsigned int n_subcycles = 0;
+    /**
+     * Largest part of a sub-cell's volume that leaves it in the whole motion,
+     * its CFL number.
+     */
+    double swept_fraction = 0.;
     /** Values brought back into field bounds from beyond round-off. */
     unsigned int n_limited = 0;
     /** Largest |V_new - V_old - sum of swept volumes| / V (asserted). */

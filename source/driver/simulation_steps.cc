@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What makes steps longer or shorter, and what is said of the quality of the
+// mesh.
+#include <alveolus/driver/messages.h>
+#include <alveolus/driver/simulation.h>
+
+#include <sstream>
+
+namespace alveolus
+{
+  using namespace dealii;
+
+  template <int dim>
+  Verdict
+  Simulation<dim>::judge_quality(const QualitySummary<dim> &candidate) const
+  {
+    const double loss =
+      quality.smallest_scaled_jacobian - candidate.smallest_scaled_jacobian;
+    if (!(loss > scene.time.largest_quality_loss))
+      return Verdict{};
+    std::ostringstream reason;
+    reason << "the smallest scaled Jacobian falls from "
+           << number(quality.smallest_scaled_jacobian, 4) << " to "
+           << number(candidate.smallest_scaled_jacobian, 4) << " near ("
+           << candidate.where << ") mm, more than `Time / Largest loss of "
+           << "quality`";
+    return {Verdict::Kind::repeat, reason.str(), "loss of quality"};
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::choose_next_step(const double dt)
+  {
+    const auto       &allowed = scene.time;
+    const std::string limited = step_control.accepted(
+      dt,
+      mechanics_report.n_iterations,
+      {{"swept fraction", swept_fraction, allowed.largest_swept_fraction},
+       {"density change",
+        remodelling_report.largest_density_change,
+        allowed.wanted_density_change}});
+    if (!limited.empty())
+      log.note("t = " + number(model->state->time, 8) + " T: " + limited +
+               " to " + number(step_control.step(), 4) + " T");
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::warn_of_quality()
+  {
+    const bool low = quality.smallest_scaled_jacobian < scene.warn_quality;
+    if (low && !quality_is_low)
+      {
+        ++totals.quality_warnings;
+        std::ostringstream place;
+        place << quality.where;
+        log.say("t = " + number(model->state->time, 8) +
+                " T: warning: the smallest scaled Jacobian is " +
+                number(quality.smallest_scaled_jacobian, 4) + ", below " +
+                number(scene.warn_quality) + ", near (" + place.str() + ") mm");
+      }
+    else if (!low && quality_is_low)
+      log.note("t = " + number(model->state->time, 8) +
+               " T: the smallest scaled Jacobian is above " +
+               number(scene.warn_quality) + " again");
+    quality_is_low = low;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::rezone_if_due(const NodalVector &start)
+  {
+    swept_fraction                = 0.;
+    const RezoningPlan &plan      = scene.rezoning_plan;
+    double              remaining = 1.;
+    if (plan.asks_for_quality())
+      remaining = model->quality().smallest_scaled_jacobian;
+    if (!plan.due(totals.steps, remaining))
+      {
+        ++totals.skipped_rezonings;
+        if (!rezoning_start)
+          {
+            rezoning_start = std::make_unique<NodalVector>(start);
+            rezoning_start->update_ghost_values();
+          }
+        return;
+      }
+    rezone(*model, rezoning_start ? *rezoning_start : start, true);
+    rezoning_start.reset();
+  }
+
+#define INSTANTIATE(dim)                                                       \
+  template Verdict Simulation<dim>::judge_quality(const QualitySummary<dim> &) \
+    const;                                                                     \
+  template void Simulation<dim>::choose_next_step(const double);               \
+  template void Simulation<dim>::warn_of_quality();                            \
+  template void Simulation<dim>::rezone_if_due(const NodalVector &);
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
+} // namespace alveolus
