@@ -203,9 +203,12 @@ namespace alveolus
     const double vectors = 10. * sizeof(double) * n_dofs;
 
     char text[200];
+    // Where the linear system tells no entries, neither do we
     std::snprintf(text,
                   sizeof(text),
-                  "%.0f unknowns, %.0f nonzeros in the matrix (%.1f a row)",
+                  nonzeros > 0.
+                    ? "%.0f unknowns, %.0f nonzeros in the matrix (%.1f a row)"
+                    : "%.0f unknowns",
                   n_dofs,
                   nonzeros,
                   nonzeros / n_dofs);
