@@ -223,6 +223,15 @@ namespace alveolus
 
 
   template <int dim>
+  std::size_t
+  DistributedSystem<dim>::n_nonzeros() const
+  {
+    return matrix.trilinos_matrix().NumMyNonzeros();
+  }
+
+
+
+  template <int dim>
   std::string
   DistributedSystem<dim>::name() const
   {

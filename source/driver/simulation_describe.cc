@@ -203,12 +203,9 @@ namespace alveolus
     const double vectors = 10. * sizeof(double) * n_dofs;
 
     char text[200];
-    // Where the linear system tells no entries, neither do we
     std::snprintf(text,
                   sizeof(text),
-                  nonzeros > 0.
-                    ? "%.0f unknowns, %.0f nonzeros in the matrix (%.1f a row)"
-                    : "%.0f unknowns",
+                  "%.0f unknowns, %.0f nonzeros in the matrix (%.1f a row)",
                   n_dofs,
                   nonzeros,
                   nonzeros / n_dofs);

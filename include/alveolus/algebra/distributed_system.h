@@ -62,6 +62,8 @@ namespace alveolus
     residual() const override;
     unsigned int
     n_replaced() const override;
+    std::size_t
+    n_nonzeros() const override;
     double
     pivot_ratio() const override;
     std::string
