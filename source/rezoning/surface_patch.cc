@@ -152,19 +152,20 @@ namespace alveolus
           for (const auto &w : weights[i])
             entries.add(i, w.first);
       }
-    matrix.reinit(entries);
+    matrix = std::make_unique<CsrMatrix>();
+    matrix->reinit(entries);
     for (unsigned int i = 0; i < n; ++i)
       {
         double sum = 0.;
         for (const auto &w : weights[i])
           sum += w.second;
-        matrix.values[matrix.position(i, i)] = 1.;
+        matrix->values[matrix->position(i, i)] = 1.;
         if (is_free[i])
           for (const auto &w : weights[i])
-            matrix.values[matrix.position(i, w.first)] = -w.second / sum;
+            matrix->values[matrix->position(i, w.first)] = -w.second / sum;
       }
     factors = std::make_unique<Umfpack>();
-    factors->factorize(matrix);
+    factors->factorize(*matrix);
   }
 
 

@@ -83,8 +83,9 @@ namespace alveolus
     /** Quadrilaterals at each node, each with the place of the node in it. */
     std::vector<std::vector<std::pair<unsigned int, unsigned int>>> corners;
     std::vector<Place>                                              initial;
-    CsrMatrix                                                       matrix;
-    std::unique_ptr<Umfpack>                                        factors;
+    /** Of its own, since the factors refer to it and patches are moved. */
+    std::unique_ptr<CsrMatrix> matrix;
+    std::unique_ptr<Umfpack>   factors;
   };
 } // namespace alveolus
 
