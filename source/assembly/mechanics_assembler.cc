@@ -171,7 +171,7 @@ namespace alveolus
             if (!moved_weights.empty() &&
                 copy.status == CellKernel<dim>::Status::good)
               for (unsigned int q = 0; q < geometry.n_points; ++q)
-                moved_weights[index * geometry.n_points + q] =
+                moved_weights[*cell * geometry.n_points + q] =
                   scratch.kernel.moved_weight(q);
           }
         catch (const RunError &error)
