@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// mpirun=2
 // Time steps and meshes that look after themselves: what limits a step is named
 // and counted, bad meshes are told, replaced, or end the run; rezoning only
 // every so many steps.
