@@ -67,11 +67,14 @@ namespace alveolus
     std::vector<double>
     measures() const;
 
-    std::shared_ptr<Scene<dim>>                  scene;
-    Mesh<dim>                                    mesh;
-    std::vector<Region>                          regions;
-    std::vector<RegionRemodelling>               remodelling;
-    std::unique_ptr<State<dim>>                  state;
+    std::shared_ptr<Scene<dim>>    scene;
+    Mesh<dim>                      mesh;
+    std::vector<Region>            regions;
+    std::vector<RegionRemodelling> remodelling;
+    std::unique_ptr<State<dim>>    state;
+    /** The positions it was made with, which rules and maps remember, too [mm];
+     * null: those of the mesh. */
+    std::unique_ptr<NodalVector>                 attached_at;
     typename MechanicsAssembler<dim>::Conditions conditions;
     std::unique_ptr<Equilibrium<dim>>            equilibrium;
     std::unique_ptr<StaggeredStep<dim>>          staggered_step;
