@@ -125,8 +125,14 @@ namespace alveolus
     stored_in_layers(const Model<dim> &model) const;
     /** Of conditions in contact, as they stand in the residual. */
     NodalVector
-          contact_forces(Model<dim> &model, const NodalVector &increment) const;
-    Terms sum;
+    contact_forces(Model<dim> &model, const NodalVector &increment) const;
+
+    /** Take anew what is stored, since mesh and history are others.
+     * @return by how much it has changed [mJ (per mm)] */
+    double
+    take_stock(const Model<dim> &model);
+
+    Terms  sum;
     double resultants = 0.;
     double in_cells   = 0.; ///< stored there at the end of the last step
     bool   begun      = false;

@@ -79,7 +79,6 @@ namespace alveolus
    * @param area its sizes and its name
    * @param loops nodes of the boundary, each loop an even number, the outer one
    *        first
-   * @param name of the files without ending
    * @throws InputError if gmsh cannot be started, RunError if no attempt gives
    *         a valid mesh
    */
@@ -88,10 +87,7 @@ namespace alveolus
     const PlanarArea                                 &area,
     const std::vector<std::vector<dealii::Point<2>>> &loops,
     const PlanarMesher                               &mesher,
-    const std::string                                &name,
-    const std::string                                &output_directory,
-    const std::string                                &where,
-    const MPI_Comm                                   &communicator);
+    const MeshingJob                                 &job);
 } // namespace alveolus
 
 #endif

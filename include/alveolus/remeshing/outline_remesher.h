@@ -71,9 +71,7 @@ namespace alveolus
     std::map<unsigned int, std::shared_ptr<const AreaMesh>>
     common_areas(const GatheredMesh &mesh,
                  const NamedSets<2> &names,
-                 const std::string  &output_directory,
-                 const std::string  &name,
-                 const MPI_Comm     &communicator) const;
+                 const MeshingJob   &job) const;
   };
 } // namespace alveolus
 

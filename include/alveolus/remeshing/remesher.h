@@ -22,6 +22,14 @@ namespace alveolus
     std::string description;  ///< how it was made, for the log
     /** Current positions of the new nodes; empty: the initial ones. */
     std::function<NodalVector(const Configuration<dim> &)> positions;
+
+    /** Keep how it was made, also with the mesh. */
+    void
+    describe(const std::string &how)
+    {
+      description      = how;
+      mesh.description = how;
+    }
   };
 
   /**

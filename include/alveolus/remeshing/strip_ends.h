@@ -43,10 +43,7 @@ namespace alveolus
                   const std::vector<std::string>             &ends,
                   const std::vector<double>                  &lengths,
                   const ZoneSettings                         &settings,
-                  const std::string                          &name,
-                  const std::string                          &output_directory,
-                  const std::string                          &where,
-                  const MPI_Comm                             &communicator);
+                  const MeshingJob                           &job);
 
   /**
    * Fill the zone of a choice in the geometry of a body whose outline was

@@ -66,10 +66,7 @@ namespace alveolus
   mesh_zone(const GatheredMesh &mesh,
             const StripZone    &zone,
             const ZoneSettings &settings,
-            const std::string  &name,
-            const std::string  &output_directory,
-            const std::string  &where,
-            const MPI_Comm     &communicator);
+            const MeshingJob   &job);
 } // namespace alveolus
 
 #endif
