@@ -67,8 +67,10 @@ namespace alveolus
     std::vector<Recorded>
     totals() const;
 
+    /** Into blocks "energy/..." of a checkpoint. */
     void
     save(BlockFile &blocks) const;
+    /** The same back. @throws InputError */
     void
     load(const BlockFile &blocks);
 
@@ -95,6 +97,7 @@ namespace alveolus
       double worst       = 0.; ///< greatest |balance| of any step so far
     };
 
+    /** The sums up to now. */
     const Terms &
     terms() const
     {

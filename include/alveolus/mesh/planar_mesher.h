@@ -12,8 +12,9 @@ namespace alveolus
   {
     /** One line for each area: cells, quality, options taken. */
     std::vector<std::string> areas;
-    double                   smallest_scaled_jacobian = 0.;
-    unsigned int             n_mesher_runs            = 0;
+    double                   smallest_scaled_jacobian = 0.; ///< of all corners
+    /** Attempts of gmsh, all together. */
+    unsigned int n_mesher_runs = 0;
 
     /** All areas in one line. */
     std::string

@@ -29,6 +29,7 @@ namespace alveolus
   class LayerColumns
   {
   public:
+    /** No cell, component or layer. */
     static constexpr unsigned int none = BodySurface::none;
 
     /** Cells in a row from one wall of a layer to the other. */
@@ -51,6 +52,7 @@ namespace alveolus
                  const std::set<dealii::types::material_id> &layer_ids,
                  const std::string                          &where);
 
+    /** The vertices of a face. */
     SortedFace
     sorted_face(const CellSide &side) const;
 
@@ -60,11 +62,13 @@ namespace alveolus
 
     /** The one or two cells at each face. */
     std::map<SortedFace, std::vector<CellSide>> sides;
-    std::vector<unsigned int>           component; ///< of each cell, or none
+    std::vector<unsigned int> component; ///< of each cell, or none
+    /** In the order of their first cells. */
     std::vector<BodySurface::Component> components;
     unsigned int                        n_parts = 0; ///< between the layers
-    std::vector<BodySurface::Layer>     layers;
-    std::vector<Column>                 columns;
+    std::vector<BodySurface::Layer>     layers; ///< kinds, by their materials
+    /** In the order of the cells they begin at. */
+    std::vector<Column> columns;
     /** The edge of a column that a vertex of a layer is on. */
     std::map<unsigned int, std::vector<unsigned int>> column_edges;
     /** Where on this edge: 0 on the wall of the first part; by vertex. */

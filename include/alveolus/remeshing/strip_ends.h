@@ -10,8 +10,8 @@ namespace alveolus
   /** A zone at the end of a strip and a mesh of it. */
   struct ZoneChoice
   {
-    StripZone zone;
-    ZoneMesh  mesh;
+    StripZone zone; ///< which cells are replaced
+    ZoneMesh  mesh; ///< what replaces them
   };
 
   /** What there is to choose from at the ends of strips. */

@@ -15,7 +15,7 @@ namespace alveolus
   /** How tetrahedra are made. */
   struct TetrahedraSettings
   {
-    GmshSettings gmsh;
+    GmshSettings gmsh; ///< how gmsh is run
     /** Of gmsh: 1 Delaunay, 4 frontal, 10 HXT. */
     unsigned int algorithm = 1;
     /** On the edge lengths inside. */
@@ -26,7 +26,7 @@ namespace alveolus
   struct Tetrahedra
   {
     std::vector<dealii::Point<3>>            vertices; ///< [mm]
-    std::vector<std::array<unsigned int, 4>> cells;
+    std::vector<std::array<unsigned int, 4>> cells;    ///< vertices by number
   };
 
   /**
