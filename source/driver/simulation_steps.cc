@@ -73,6 +73,56 @@ namespace alveolus
 
 
   template <int dim>
+  std::string
+  Simulation<dim>::quality_if_low(const QualitySummary<dim> &judged) const
+  {
+    if (!(judged.smallest_scaled_jacobian < scene.warn_quality))
+      return "";
+    std::ostringstream text;
+    text << "elements have become flat, the smallest scaled Jacobian is "
+         << number(judged.smallest_scaled_jacobian, 2) << " near ("
+         << judged.where << ") mm: "
+         << (model->rezoner || remesh_plan
+               ? "remesh earlier, or rezone by other rules"
+               : "rezone or remesh");
+    return text.str();
+  }
+
+
+
+  template <int dim>
+  std::string
+  Simulation<dim>::advice_against(const std::string &cause) const
+  {
+    // Shorter steps were tried: what they do not help against is the answer.
+    if (cause == "density change")
+      return "raise `Remodelling / Maximum density change`, or reduce `Time / "
+             "Minimum step`";
+    const std::string mesh = quality_if_low(quality);
+    if (cause == "inverted corners" || cause == "loss of quality" ||
+        cause == "material or mesh")
+      return !mesh.empty() ? mesh
+             : model->rezoner || remesh_plan
+               ? "the mesh was good (scaled Jacobian " +
+                   number(quality.smallest_scaled_jacobian, 2) +
+                   ") until then: the load may be more than the body carries, "
+                   "see the forces in history.csv"
+               : "rezone or remesh there";
+    if (cause == "Newton" || cause == "linear solver")
+      return !mesh.empty()
+               ? mesh
+               : "the mesh is good (scaled Jacobian " +
+                   number(quality.smallest_scaled_jacobian, 2) +
+                   "): the load may be more than the body carries, see the "
+                   "forces in history.csv, and prescribe a motion in its place "
+                   "to go beyond; if the residuals in log.txt stay just above "
+                   "it, raise `Solver / Tolerance`";
+    return "the attempts before are in log.txt; reduce `Time / Minimum step`";
+  }
+
+
+
+  template <int dim>
   void
   Simulation<dim>::rezone_if_due(const NodalVector &start)
   {
@@ -98,8 +148,12 @@ namespace alveolus
 #define INSTANTIATE(dim)                                                       \
   template Verdict Simulation<dim>::judge_quality(const QualitySummary<dim> &) \
     const;                                                                     \
-  template void Simulation<dim>::choose_next_step(const double);               \
-  template void Simulation<dim>::warn_of_quality();                            \
+  template void        Simulation<dim>::choose_next_step(const double);        \
+  template void        Simulation<dim>::warn_of_quality();                     \
+  template std::string Simulation<dim>::quality_if_low(                        \
+    const QualitySummary<dim> &) const;                                        \
+  template std::string Simulation<dim>::advice_against(const std::string &)    \
+    const;                                                                     \
   template void Simulation<dim>::rezone_if_due(const NodalVector &);
   INSTANTIATE(2)
   INSTANTIATE(3)
