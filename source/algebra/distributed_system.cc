@@ -30,7 +30,7 @@ namespace alveolus
     IndexSet       relevant;
     DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
     DynamicSparsityPattern pattern =
-      make_sparsity(dof_handler, constraints, relevant, couplings);
+      make_sparsity(dof_handler, constraints, relevant, owned, couplings);
     SparsityTools::distribute_sparsity_pattern(pattern,
                                                owned,
                                                communicator,
@@ -60,6 +60,26 @@ namespace alveolus
                               const std::vector<types::global_dof_index> &dofs)
   {
     constraints.distribute_local_to_global(cell_matrix, dofs, matrix);
+  }
+
+
+
+  template <int dim>
+  void
+  DistributedSystem<dim>::add_rows(
+    const FullMatrix<double>                   &cell_matrix,
+    const std::vector<types::global_dof_index> &dofs,
+    const std::vector<unsigned int>            &rows)
+  {
+    FullMatrix<double>                   part(rows.size(), dofs.size());
+    std::vector<types::global_dof_index> row_dofs;
+    for (unsigned int i = 0; i < rows.size(); ++i)
+      {
+        row_dofs.push_back(dofs[rows[i]]);
+        for (unsigned int j = 0; j < dofs.size(); ++j)
+          part(i, j) = cell_matrix(rows[i], j);
+      }
+    constraints.distribute_local_to_global(part, row_dofs, dofs, matrix);
   }
 
 

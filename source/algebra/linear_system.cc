@@ -16,6 +16,7 @@ namespace alveolus
   make_sparsity(const DoFHandler<dim>           &dof_handler,
                 const AffineConstraints<double> &constraints,
                 const IndexSet                  &relevant,
+                const IndexSet                  &owned,
                 const DofGroups                 &couplings)
   {
     DynamicSparsityPattern pattern(relevant);
@@ -23,10 +24,19 @@ namespace alveolus
                                     pattern,
                                     constraints,
                                     /*keep constrained*/ false);
+    std::vector<types::global_dof_index> rows;
     for (const auto &group : couplings)
-      constraints.add_entries_local_to_global(group,
-                                              pattern,
-                                              /*keep constrained*/ false);
+      {
+        rows.clear();
+        for (const auto dof : group)
+          if (owned.is_element(dof))
+            rows.push_back(dof);
+        if (!rows.empty())
+          constraints.add_entries_local_to_global(rows,
+                                                  group,
+                                                  pattern,
+                                                  /*keep constrained*/ false);
+      }
     return pattern;
   }
 
@@ -51,7 +61,7 @@ namespace alveolus
         IndexSet all(dof_handler.n_dofs());
         all.add_range(0, dof_handler.n_dofs());
         return std::make_unique<SerialSystem>(
-          make_sparsity(dof_handler, constraints, all, couplings),
+          make_sparsity(dof_handler, constraints, all, all, couplings),
           constraints,
           dof_handler.get_triangulation().n_active_cells());
       }
@@ -71,10 +81,12 @@ namespace alveolus
   make_sparsity(const DoFHandler<2> &,
                 const AffineConstraints<double> &,
                 const IndexSet &,
+                const IndexSet &,
                 const DofGroups &);
   template DynamicSparsityPattern
   make_sparsity(const DoFHandler<3> &,
                 const AffineConstraints<double> &,
+                const IndexSet &,
                 const IndexSet &,
                 const DofGroups &);
 

@@ -43,6 +43,33 @@ namespace alveolus
 
 
   void
+  AssemblyTarget::add_replicated(
+    const FullMatrix<double>                   &matrix,
+    const Vector<double>                       &forces,
+    const std::vector<types::global_dof_index> &dofs) const
+  {
+    const auto               &partitioner = *residual.get_partitioner();
+    std::vector<unsigned int> mine;
+    for (unsigned int i = 0; i < dofs.size(); ++i)
+      if (partitioner.in_local_range(dofs[i]))
+        {
+          mine.push_back(i);
+          residual(dofs[i]) += forces[i];
+        }
+    if (system == nullptr || mine.empty())
+      return;
+    system->add_rows(matrix, dofs, mine);
+    if (lift == nullptr)
+      return;
+    for (unsigned int j = 0; j < dofs.size(); ++j)
+      if (lift->is_constrained(dofs[j]))
+        for (const unsigned int i : mine)
+          (*lifted)(dofs[i]) -= matrix(i, j) * lift->get_inhomogeneity(dofs[j]);
+  }
+
+
+
+  void
   AssemblyTarget::add_lifted(
     const FullMatrix<double>                   &matrix,
     const std::vector<types::global_dof_index> &dofs) const

@@ -69,11 +69,14 @@ namespace alveolus
   ContactCondition<dim>::attach(const State<dim>  &state,
                                 const std::string &path)
   {
-    this->where = path;
-    if (Utilities::MPI::n_mpi_processes(state.configuration.communicator()) > 1)
+    this->where               = path;
+    const auto &triangulation = *state.configuration.mesh.triangulation;
+    if (triangulation.has_hanging_nodes() &&
+        Utilities::MPI::n_mpi_processes(state.configuration.communicator()) > 1)
       throw InputError(path,
-                       "contact works on one process only",
-                       "start without mpirun, or take the condition out");
+                       "contact on a mesh with hanging nodes works on one "
+                       "process only",
+                       "start without mpirun, or refine everywhere");
     if constexpr (dim == 2)
       {
         parameters.pair.sticks = parameters.friction == "sticking";
@@ -220,7 +223,7 @@ namespace alveolus
     ContactCondition,
     "contact",
     "Unilateral contact of the boundaries `On` (of the softer body) against "
-    "`Against`, in the plane, on one process: gap g >= 0, pressure "
+    "`Against`, in the plane: gap g >= 0, pressure "
     "p = <l - e g> >= 0, p g = 0. By an augmented Lagrangian: the multiplier l "
     "follows p, with the penalty e = `Stiffness`, until penetration and opening "
     "under pressure are below `Penetration tolerance`; l is linear on each line "

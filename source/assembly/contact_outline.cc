@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <alveolus/assembly/condition.h>
 #include <alveolus/assembly/contact_outline.h>
 #include <alveolus/base/errors.h>
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <sstream>
@@ -9,6 +11,66 @@
 namespace alveolus
 {
   using namespace dealii;
+
+  namespace
+  {
+    /** A node of a line, as its process tells the others. */
+    struct LineNode
+    {
+      NodeId                                 id = 0;
+      std::array<types::global_dof_index, 2> dofs;
+      Point<2>                               place; ///< initially [mm]
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int)
+      {
+        archive &id &dofs &place;
+      }
+    };
+
+    /** Begin, end and middle (of degree 1: begin again). */
+    using Line = std::array<LineNode, 3>;
+
+    /**
+     * The lines of all processes with one of the boundary @p ids, each with its
+     * body on the left (collective).
+     */
+    std::vector<Line>
+    lines_of(const Nodes<2> &nodes, const std::set<types::boundary_id> &ids)
+    {
+      // Vertices of the faces of a cell, the cell on the left.
+      static constexpr unsigned int left[4][2]    = {{2, 0},
+                                                     {1, 3},
+                                                     {0, 1},
+                                                     {3, 2}};
+      const auto                   &configuration = nodes.configuration;
+      std::vector<Line>             lines;
+      std::vector<NodeId>           cell_nodes;
+      for (const auto &[cell, f] : boundary_faces(configuration, ids))
+        {
+          nodes.cell_nodes(cell, cell_nodes);
+          const std::array<NodeId, 3> id = {
+            {cell_nodes[left[f][0]],
+             cell_nodes[left[f][1]],
+             cell_nodes[configuration.degree == 2 ? 4 + f : left[f][0]]}};
+          lines.emplace_back();
+          for (unsigned int a = 0; a < 3; ++a)
+            lines.back()[a] = {id[a],
+                               nodes.dofs(id[a]),
+                               nodes.get(configuration.initial_positions(),
+                                         id[a])};
+        }
+      const auto all =
+        Utilities::MPI::all_gather(configuration.communicator(), lines);
+      lines.clear();
+      for (const auto &part : all)
+        lines.insert(lines.end(), part.begin(), part.end());
+      return lines;
+    }
+  } // namespace
+
+
 
   EdgeCurve::EdgeCurve(const std::array<Point<2>, 3> &nodes,
                        const unsigned int             n_nodes)
@@ -139,68 +201,54 @@ namespace alveolus
     : n_nodes_per_edge(mesh_nodes.configuration.degree + 1)
   {
     const auto &configuration = mesh_nodes.configuration;
-    const auto &initial       = configuration.initial_positions();
-    const auto  place         = [&](const unsigned int node) {
-      return mesh_nodes.get(initial, nodes[node]);
-    };
-    const auto before = [&](const unsigned int a, const unsigned int b) {
-      const Point<2> x = place(a), y = place(b);
-      return x[0] != y[0] ? x[0] < y[0] : x[1] < y[1];
-    };
-
-    // Vertices of the faces of a cell, the cell on the left.
-    static constexpr unsigned int left[4][2] = {{2, 0}, {1, 3}, {0, 1}, {3, 2}};
+    communicator              = configuration.communicator();
     std::map<NodeId, unsigned int>         number;
     std::map<unsigned int, unsigned int>   begins_at, ends_at;
-    std::vector<NodeId>                    cell_nodes;
+    std::vector<Point<2>>                  initial;
     std::vector<Edge>                      found;
     std::vector<std::vector<unsigned int>> pieces; // edges of each name
+    const auto before = [&](const unsigned int a, const unsigned int b) {
+      const Point<2> x = initial[a], y = initial[b];
+      return x[0] != y[0] ? x[0] < y[0] : x[1] < y[1];
+    };
     for (const auto &name : Utilities::split_string_list(list, ','))
       {
-        const auto &ids = configuration.mesh.names.boundary(name, where);
         pieces.emplace_back();
-        for (const auto &cell :
-             configuration.dof_handler.active_cell_iterators())
-          for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary() &&
-                ids.count(cell->face(f)->boundary_id()) > 0)
+        for (const auto &line :
+             lines_of(mesh_nodes,
+                      configuration.mesh.names.boundary(name, where)))
+          {
+            Edge edge;
+            for (unsigned int a = 0; a < 3; ++a)
               {
-                mesh_nodes.cell_nodes(cell, cell_nodes);
-                const std::array<NodeId, 3> id = {{cell_nodes[left[f][0]],
-                                                   cell_nodes[left[f][1]],
-                                                   n_nodes_per_edge == 3
-                                                     ? cell_nodes[4 + f]
-                                                     : cell_nodes[left[f][0]]}};
-                Edge                        edge;
-                for (unsigned int a = 0; a < 3; ++a)
+                const auto added = number.emplace(line[a].id, nodes.size());
+                if (added.second)
                   {
-                    const auto added = number.emplace(id[a], nodes.size());
-                    if (added.second)
-                      {
-                        nodes.push_back(id[a]);
-                        dofs.push_back(mesh_nodes.dofs(id[a]));
-                      }
-                    edge.nodes[a] = added.first->second;
+                    nodes.push_back(line[a].id);
+                    dofs.push_back(line[a].dofs);
+                    initial.push_back(line[a].place);
+                    owned.push_back(mesh_nodes.is_owned(line[a].id));
                   }
-                const auto begin = begins_at.find(edge.nodes[0]);
-                if (begin != begins_at.end() &&
-                    found[begin->second].nodes == edge.nodes)
-                  continue; // a line that has two of the names
-                const bool first =
-                  begins_at.emplace(edge.nodes[0], found.size()).second;
-                if (!first ||
-                    !ends_at.emplace(edge.nodes[1], found.size()).second)
-                  {
-                    std::ostringstream text;
-                    text << "more than two boundary lines meet at ("
-                         << place(edge.nodes[first ? 1 : 0]) << ")";
-                    throw InputError(where,
-                                     text.str(),
-                                     "leave one of the pieces out");
-                  }
-                pieces.back().push_back(found.size());
-                found.push_back(edge);
+                edge.nodes[a] = added.first->second;
               }
+            const auto begin = begins_at.find(edge.nodes[0]);
+            if (begin != begins_at.end() &&
+                found[begin->second].nodes == edge.nodes)
+              continue; // a line that has two of the names
+            const bool first =
+              begins_at.emplace(edge.nodes[0], found.size()).second;
+            if (!first || !ends_at.emplace(edge.nodes[1], found.size()).second)
+              {
+                std::ostringstream text;
+                text << "more than two boundary lines meet at ("
+                     << initial[edge.nodes[first ? 1 : 0]] << ")";
+                throw InputError(where,
+                                 text.str(),
+                                 "leave one of the pieces out");
+              }
+            pieces.back().push_back(found.size());
+            found.push_back(edge);
+          }
       }
     for (const auto &[node, edge] : begins_at)
       {
@@ -259,10 +307,16 @@ namespace alveolus
   std::vector<Point<2>>
   ContactOutline::get(const NodalVector &field) const
   {
+    // Each value comes from its owner, all others add zero: the sum is exact.
+    std::vector<double> sum(2 * nodes.size(), 0.);
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      if (owned[i])
+        for (unsigned int d = 0; d < 2; ++d)
+          sum[2 * i + d] = field(dofs[i][d]);
+    Utilities::MPI::sum(sum, communicator, sum);
     std::vector<Point<2>> values(nodes.size());
     for (unsigned int i = 0; i < nodes.size(); ++i)
-      for (unsigned int d = 0; d < 2; ++d)
-        values[i][d] = field(dofs[i][d]);
+      values[i] = Point<2>(sum[2 * i], sum[2 * i + 1]);
     return values;
   }
 

@@ -198,7 +198,7 @@ namespace alveolus
             matrix(i, j) += point.weight * row.second * column.second *
                             forces.matrix[row.first][column.first];
       }
-    target.add(matrix, vector, dofs);
+    target.add_replicated(matrix, vector, dofs);
   }
 
 

@@ -305,6 +305,7 @@ namespace alveolus
         const double bound =
           std::max({1e-6,
                     100. * scene.solver.tolerance,
+                    100. * mechanics_report.round_off,
                     100. * scene.solver.absolute_tolerance /
                       std::max(mechanics_report.force_scale, 1e-300)});
         if (!(error <= bound))
@@ -399,6 +400,13 @@ namespace alveolus
                 << mechanics_report.n_direct_instead
                 << " times and MUMPS took over, try `Solver / Linear solver = "
                    "multigrid GMRES` or MUMPS";
+    if (mechanics_report.round_off > 0.)
+      {
+        ++totals.at_round_off;
+        residuals << "; above `Solver / Tolerance` but no longer falling: "
+                     "round-off alone makes "
+                  << mechanics_report.round_off;
+      }
     log.note("t = " + number(state.time, 8) + " T accepted, residuals" +
              residuals.str());
   }

@@ -122,6 +122,7 @@ namespace alveolus
                BlockFile::Integers{totals.skipped_rezonings,
                                    totals.quality_warnings,
                                    quality_is_low ? 1u : 0u});
+    blocks.put("totals/round-off", BlockFile::Integers{totals.at_round_off});
     blocks.put("last step/limits",
                BlockFile::Numbers{swept_fraction,
                                   remodelling_report.largest_density_change});
@@ -240,6 +241,13 @@ namespace alveolus
         quality_is_low                            = further[2] != 0;
         swept_fraction                            = limits[0];
         remodelling_report.largest_density_change = limits[1];
+      }
+    if (blocks.has("totals/round-off"))
+      {
+        const auto &n = blocks.integers("totals/round-off");
+        if (n.size() != 1)
+          blocks.refuse("totals/round-off", "does not hold an integer");
+        totals.at_round_off = n[0];
       }
     if (blocks.has("rezoning/start"))
       {

@@ -251,8 +251,9 @@ namespace alveolus
       summary["rejected attempts by cause"][cause] = n;
     for (const auto &[cause, n] : step_control.limited())
       summary["steps limited by"][cause] = n;
-    summary["quality warnings"]  = totals.quality_warnings;
-    summary["Newton iterations"] = totals.iterations;
+    summary["quality warnings"]         = totals.quality_warnings;
+    summary["steps ended by round-off"] = totals.at_round_off;
+    summary["Newton iterations"]        = totals.iterations;
     summary["Newton iterations per step"] =
       totals.steps > 0 ? static_cast<double>(totals.iterations) / totals.steps
                        : 0.;

@@ -95,29 +95,12 @@ namespace alveolus
   Simulation<dim>::advice_against(const std::string &cause) const
   {
     // Shorter steps were tried: what they do not help against is the answer.
-    if (cause == "density change")
-      return "raise `Remodelling / Maximum density change`, or reduce `Time / "
-             "Minimum step`";
     const std::string mesh = quality_if_low(quality);
-    if (cause == "inverted corners" || cause == "loss of quality" ||
-        cause == "material or mesh")
-      return !mesh.empty() ? mesh
-             : model->rezoner || remesh_plan
-               ? "the mesh was good (scaled Jacobian " +
-                   number(quality.smallest_scaled_jacobian, 2) +
-                   ") until then: the load may be more than the body carries, "
-                   "see the forces in history.csv"
-               : "rezone or remesh there";
-    if (cause == "Newton" || cause == "linear solver")
-      return !mesh.empty()
-               ? mesh
-               : "the mesh is good (scaled Jacobian " +
-                   number(quality.smallest_scaled_jacobian, 2) +
-                   "): the load may be more than the body carries, see the "
-                   "forces in history.csv, and prescribe a motion in its place "
-                   "to go beyond; if the residuals in log.txt stay just above "
-                   "it, raise `Solver / Tolerance`";
-    return "the attempts before are in log.txt; reduce `Time / Minimum step`";
+    for (const std::string of_mesh :
+         {"inverted corners", "loss of quality", "material or mesh", "Newton"})
+      if (cause == of_mesh && !mesh.empty())
+        return mesh;
+    return advice_for(cause);
   }
 
 

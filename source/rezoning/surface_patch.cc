@@ -52,7 +52,6 @@ namespace alveolus
     for (unsigned int i = 0; i < nodes.size(); ++i)
       if (taken.count(nodes[i]) > 0)
         is_free[i] = false;
-    factorise();
   }
 
 

@@ -2,6 +2,10 @@
 #include <alveolus/rezoning/node_sets.h>
 #include <alveolus/rezoning/surface_rule.h>
 
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+
 namespace alveolus
 {
   using namespace dealii;
@@ -41,16 +45,72 @@ namespace alveolus
                       const std::string      &where)
   {
     require_names(on, where);
+    const MPI_Comm communicator = nodes.configuration.communicator();
     patches.clear();
     touched.clear();
+    solver.clear();
+    batches.clear();
+    std::vector<std::size_t> load(
+      Utilities::MPI::n_mpi_processes(communicator));
+    std::set<NodeId> freed; // by the batch
     for (const std::string &name : on)
       {
         patches.emplace_back(nodes, positions, taken, name, where + "/On");
-        const SurfacePatch &patch = patches.back();
+        SurfacePatch &patch = patches.back();
+        solver.push_back(std::min_element(load.begin(), load.end()) -
+                         load.begin());
+        load[solver.back()] += patch.nodes.size();
+        if (solver.back() == Utilities::MPI::this_mpi_process(communicator))
+          patch.factorise();
+        bool depends = batches.empty();
         for (unsigned int i = 0; i < patch.nodes.size(); ++i)
-          if (patch.is_free[i] && nodes.is_relevant(patch.nodes[i]))
-            touched.push_back(patch.nodes[i]);
+          if (!patch.is_free[i] && freed.count(patch.nodes[i]) > 0)
+            depends = true;
+        if (depends)
+          {
+            batches.push_back(
+              Batch{static_cast<unsigned int>(patches.size()) - 1, 0});
+            freed.clear();
+          }
+        batches.back().last = patches.size();
+        for (unsigned int i = 0; i < patch.nodes.size(); ++i)
+          if (patch.is_free[i])
+            {
+              freed.insert(patch.nodes[i]);
+              if (nodes.is_relevant(patch.nodes[i]))
+                touched.push_back(patch.nodes[i]);
+            }
       }
+  }
+
+
+
+  std::vector<std::vector<SurfacePatch::Place>>
+  SurfaceRule::harmonic(const Batch       &batch,
+                        const Nodes<3>    &nodes,
+                        const NodalVector &proposed) const
+  {
+    const MPI_Comm communicator = nodes.configuration.communicator();
+    // First what all take part in, so that no process waits for another's
+    // solution
+    std::vector<std::vector<SurfacePatch::Place>> x;
+    for (unsigned int p = batch.first; p < batch.last; ++p)
+      x.push_back(nodes.gather(proposed, patches[p].nodes));
+    std::vector<double> all; // each from its process, the others add zero
+    for (unsigned int p = batch.first; p < batch.last; ++p)
+      if (solver[p] == Utilities::MPI::this_mpi_process(communicator))
+        for (const auto &place : patches[p].harmonic(x[p - batch.first]))
+          for (unsigned int c = 0; c < 3; ++c)
+            all.push_back(place[c]);
+      else
+        all.resize(all.size() + 3 * patches[p].nodes.size(), 0.);
+    Utilities::MPI::sum(all, communicator, all);
+    const double *next = all.data();
+    for (auto &places : x)
+      for (auto &place : places)
+        for (unsigned int c = 0; c < 3; ++c)
+          place[c] = *next++;
+    return x;
   }
 
 
@@ -62,19 +122,24 @@ namespace alveolus
                      NodalVector       &proposed,
                      RezoningReport & /*report*/) const
   {
-    for (const SurfacePatch &patch : patches)
+    for (const Batch &batch : batches)
       {
-        auto x = patch.harmonic(nodes.gather(proposed, patch.nodes));
-        if (stay)
+        auto positions = harmonic(batch, nodes, proposed);
+        for (unsigned int p = batch.first; p < batch.last; ++p)
           {
-            std::vector<bool> wanted(x.size());
+            const SurfacePatch &patch = patches[p];
+            auto               &x     = positions[p - batch.first];
+            if (stay)
+              {
+                std::vector<bool> wanted(x.size());
+                for (unsigned int i = 0; i < x.size(); ++i)
+                  wanted[i] = nodes.is_owned(patch.nodes[i]);
+                patch.project(nodes.gather(lagrangian, patch.nodes), wanted, x);
+              }
             for (unsigned int i = 0; i < x.size(); ++i)
-              wanted[i] = nodes.is_owned(patch.nodes[i]);
-            patch.project(nodes.gather(lagrangian, patch.nodes), wanted, x);
+              if (patch.is_free[i] && nodes.is_owned(patch.nodes[i]))
+                nodes.set(proposed, patch.nodes[i], x[i]);
           }
-        for (unsigned int i = 0; i < x.size(); ++i)
-          if (patch.is_free[i] && nodes.is_owned(patch.nodes[i]))
-            nodes.set(proposed, patch.nodes[i], x[i]);
       }
     proposed.update_ghost_values();
   }

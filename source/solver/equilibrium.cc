@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/algebra/adaptive_tolerance.h>
 #include <alveolus/solver/equilibrium.h>
+#include <alveolus/solver/round_off.h>
 
 #include <deal.II/dofs/dof_tools.h>
 
 #include <cmath>
+#include <set>
 
 namespace alveolus
 {
@@ -115,27 +117,38 @@ namespace alveolus
     , lifted(state.configuration.make_vector())
   {
     // Which dofs are constrained does not change in time, only their values.
+    const Interval now{state.time, state.time};
     for (auto &condition : conditions)
-      condition->begin_step(state, Interval{state.time, state.time});
-    set_constraints(Interval{state.time, state.time});
-    update_system();
+      condition->begin_step(state, now);
+    update_system(now);
   }
 
 
 
   template <int dim>
   void
-  Equilibrium<dim>::update_system()
+  Equilibrium<dim>::update_system(const Interval &interval)
   {
     std::vector<unsigned int> revisions;
     for (const auto &condition : conditions)
       revisions.push_back(condition->couplings_revision());
     if (system && revisions == coupled)
-      return;
+      {
+        set_constraints(interval);
+        return;
+      }
     coupled = revisions;
     DofGroups couplings;
     for (const auto &condition : conditions)
       condition->add_couplings(couplings);
+    if (Utilities::MPI::n_mpi_processes(state.configuration.communicator()) > 1)
+      {
+        std::set<types::global_dof_index> dofs;
+        for (const auto &group : couplings)
+          dofs.insert(group.begin(), group.end());
+        coupled_dofs.assign(dofs.begin(), dofs.end());
+      }
+    set_constraints(interval);
     system = make_linear_system(state.configuration.dof_handler,
                                 held,
                                 parameters.linear_solver,
@@ -164,8 +177,10 @@ namespace alveolus
     PrescribedIncrements increments;
     for (const auto &condition : conditions)
       condition->prescribe(state, interval, increments);
-    prescribed.reinit(state.configuration.locally_relevant);
-    held.reinit(state.configuration.locally_relevant);
+    IndexSet known = state.configuration.locally_relevant;
+    known.add_indices(coupled_dofs.begin(), coupled_dofs.end());
+    prescribed.reinit(known);
+    held.reinit(known);
     if (!hanging.empty())
       {
         prescribed.merge(hanging.constraints());
@@ -180,8 +195,37 @@ namespace alveolus
         prescribed.set_inhomogeneity(dof, value.first);
         held.add_line(dof);
       }
+    share_constraints();
     prescribed.close();
     held.close();
+  }
+
+
+
+  template <int dim>
+  void
+  Equilibrium<dim>::share_constraints()
+  {
+    if (coupled_dofs.empty())
+      return;
+    // Each comes from its owner, all others add zero.
+    const auto         &owned = state.configuration.locally_owned;
+    std::vector<double> sum(2 * coupled_dofs.size(), 0.);
+    for (unsigned int i = 0; i < coupled_dofs.size(); ++i)
+      if (owned.is_element(coupled_dofs[i]) &&
+          held.is_constrained(coupled_dofs[i]))
+        {
+          sum[2 * i]     = 1.;
+          sum[2 * i + 1] = prescribed.get_inhomogeneity(coupled_dofs[i]);
+        }
+    Utilities::MPI::sum(sum, state.configuration.communicator(), sum);
+    for (unsigned int i = 0; i < coupled_dofs.size(); ++i)
+      if (sum[2 * i] > 0. && !held.is_constrained(coupled_dofs[i]))
+        {
+          prescribed.add_line(coupled_dofs[i]);
+          prescribed.set_inhomogeneity(coupled_dofs[i], sum[2 * i + 1]);
+          held.add_line(coupled_dofs[i]);
+        }
   }
 
 
@@ -252,6 +296,29 @@ namespace alveolus
 
 
   template <int dim>
+  double
+  Equilibrium<dim>::round_off_residual()
+  {
+    NodalVector here(residual_vector);
+    here.zero_out_ghost_values();
+    NodalVector moved = round_off_displacement(state.configuration);
+    hanging.distribute(moved);
+    moved.zero_out_ghost_values();
+    increment.zero_out_ghost_values();
+    moved += increment;
+    moved.update_ghost_values();
+    increment.update_ghost_values();
+    const bool good = assemble(moved, false, false).good;
+    residual_vector.zero_out_ghost_values();
+    residual_vector -= here;
+    const double norm = good ? free_norm(residual_vector) : 0.;
+    assemble(increment, false, false); // its history again
+    return norm;
+  }
+
+
+
+  template <int dim>
   AssemblyResult
   Equilibrium<dim>::assemble_without_increment()
   {
@@ -316,8 +383,7 @@ namespace alveolus
                      cause};
     };
     assembler.begin_step(interval);
-    set_constraints(interval);
-    update_system();
+    update_system(interval);
     if (system->is_iterative())
       system->set_positions(state.configuration.positions());
     const unsigned int n_replaced = system->n_replaced();
@@ -371,6 +437,17 @@ namespace alveolus
           return repeat(result.reason, "material or mesh");
       }
 
+    // No residual is better than what round-off makes; where it stagnates
+    // within ten times that, it has converged. Measured once, where needed.
+    double     round_off    = -1.;
+    const auto is_round_off = [&](const double norm, const std::size_t first) {
+      if (!stagnates(report.residuals, first))
+        return false;
+      if (round_off < 0.)
+        round_off = round_off_residual();
+      return norm <= 10. * round_off;
+    };
+
     unsigned int n_before_augmentation = 0;
     double       last_norm             = 0.;
     bool         have_matrix           = true;
@@ -386,8 +463,11 @@ namespace alveolus
         report.force_scale  = result.force_scale;
         if (!std::isfinite(norm))
           return repeat("the residual is not a finite number", "Newton");
+        const bool at_round_off = !lift && is_round_off(norm, first);
+        if (at_round_off)
+          report.round_off = round_off / scale;
         if (!lift && (norm <= parameters.tolerance * result.force_scale ||
-                      norm <= parameters.absolute_tolerance))
+                      norm <= parameters.absolute_tolerance || at_round_off))
           {
             expect_convergence(report.residuals, first); // learns from it
             try
@@ -412,7 +492,11 @@ namespace alveolus
         if (n >= parameters.max_iterations)
           return repeat("Newton did not converge in " + std::to_string(n) +
                           " iterations (residual " +
-                          Utilities::to_string(norm / scale) + ")",
+                          Utilities::to_string(norm / scale) + ")" +
+                          (round_off > 0.
+                             ? "; round-off alone makes " +
+                                 Utilities::to_string(round_off / scale)
+                             : ""),
                         "Newton");
 
         if (!have_matrix)

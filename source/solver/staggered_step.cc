@@ -351,6 +351,7 @@ namespace alveolus
             again.linear_residual =
               std::max(again.linear_residual, mechanics.linear_residual);
             again.imbalance = mechanics.imbalance;
+            again.round_off = std::max(again.round_off, mechanics.round_off);
             mechanics       = again;
             if (verdict.repeats())
               break;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // mpirun=2
-// Contact says that it works on one process only.
+// Contact on several processes: scene/contact-patch and scene/incisor; here only
+// what it refuses.
 #include <alveolus/assembly/contact_condition.h>
 #include <alveolus/base/errors.h>
 
@@ -13,13 +14,17 @@ using namespace alveolus;
 
 
 
-TEST(Contact, IsRefusedOnSeveralProcesses)
+TEST(Contact, IsRefusedWithHangingNodesOnSeveralProcesses)
 {
   Mesh<2> mesh;
   mesh.triangulation =
     std::make_unique<parallel::distributed::Triangulation<2>>(MPI_COMM_WORLD);
   GridGenerator::hyper_cube(*mesh.triangulation, 0., 1., true);
   mesh.triangulation->refine_global(2);
+  for (const auto &cell : mesh.triangulation->active_cell_iterators())
+    if (cell->is_locally_owned() && cell->center()[0] < 0.25)
+      cell->set_refine_flag();
+  mesh.triangulation->execute_coarsening_and_refinement();
   mesh.names.boundaries = {{"left", {0}}, {"right", {1}}};
   State<2> state(mesh, 1, {{0, 0}}, {HistoryLayout({}, 2)});
 

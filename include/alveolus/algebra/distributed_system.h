@@ -10,12 +10,16 @@
 
 namespace alveolus
 {
-  /** Entries of the matrix of a DoFHandler, for the rows of @p relevant. */
+  /**
+   * Entries of the matrix of a DoFHandler, for the rows of @p relevant, and of
+   * @p couplings, for the rows of @p owned.
+   */
   template <int dim>
   dealii::DynamicSparsityPattern
   make_sparsity(const dealii::DoFHandler<dim>           &dof_handler,
                 const dealii::AffineConstraints<double> &constraints,
                 const dealii::IndexSet                  &relevant,
+                const dealii::IndexSet                  &owned,
                 const DofGroups                         &couplings);
 
   /**
@@ -45,6 +49,10 @@ namespace alveolus
     void
     add(const dealii::FullMatrix<double>                   &cell_matrix,
         const std::vector<dealii::types::global_dof_index> &dofs) override;
+    void
+    add_rows(const dealii::FullMatrix<double>                   &cell_matrix,
+             const std::vector<dealii::types::global_dof_index> &dofs,
+             const std::vector<unsigned int>                    &rows) override;
     void
     compress() override;
     void

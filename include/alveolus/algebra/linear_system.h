@@ -45,6 +45,19 @@ namespace alveolus
       add(cell_matrix, dofs);
     }
 
+    /**
+     * Add only @p rows (numbers in @p dofs) of a matrix whose dofs may lie
+     * anywhere; whether they are constrained must be known here. On one process
+     * these are all of its rows.
+     */
+    virtual void
+    add_rows(const dealii::FullMatrix<double>                   &cell_matrix,
+             const std::vector<dealii::types::global_dof_index> &dofs,
+             const std::vector<unsigned int> & /*rows*/)
+    {
+      add(cell_matrix, dofs);
+    }
+
     /** End of assembly: exchange between processes. */
     virtual void
     compress() = 0;
@@ -140,8 +153,8 @@ namespace alveolus
    *        `UMFPACK`, `MUMPS`, `multigrid` (CG with Trilinos ML) or `multigrid
    *        GMRES`
    * @param tolerance relative residual of iterative solvers
-   * @param couplings entries of the matrix beyond those of the cells, among
-   *        relevant dofs
+   * @param couplings entries of the matrix beyond those of the cells, the same
+   *        on every process; constraints must know these dofs everywhere
    * @throws InputError for UMFPACK on several processes
    */
   template <int dim>

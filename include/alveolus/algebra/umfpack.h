@@ -6,10 +6,14 @@
 
 #include <deal.II/lac/vector.h>
 
+#include <array>
+#include <umfpack.h>
+
 namespace alveolus
 {
   /**
-   * UMFPACK through its C interface for a matrix whose sparsity pattern stays:
+   * UMFPACK through its C interface for a matrix whose sparsity pattern is
+   * symmetric, but for rows of held unknowns, and stays:
    * the symbolic analysis is made once and reused by every numerical
    * factorisation, which deal.II's own wrapper repeats each time.
    */
@@ -51,9 +55,8 @@ namespace alveolus
     }
 
     /**
-     * Bytes the factors of @p matrix are expected to take: by the symmetric
-     * analysis without pivoting, or UMFPACK's upper bound where the pattern is
-     * not symmetric. Analyses the pattern if that was not done yet.
+     * Bytes the factors of @p matrix are expected to take, without pivoting.
+     * Analyses the pattern if that was not done yet.
      */
     std::size_t
     expected_bytes(const CsrMatrix &matrix);
@@ -64,7 +67,8 @@ namespace alveolus
     void
     analyse(const CsrMatrix &matrix);
 
-    const bool       refine;
+    std::array<double, UMFPACK_CONTROL> control;
+
     const CsrMatrix *factorised = nullptr;
     double           expected   = 0.; ///< entries of both factors
     void            *symbolic   = nullptr;

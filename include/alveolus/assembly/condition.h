@@ -69,6 +69,17 @@ namespace alveolus
         const dealii::Vector<double>                       &forces,
         const std::vector<dealii::types::global_dof_index> &dofs) const;
 
+    /**
+     * The same where every process has the same forces and the same matrix, of
+     * any dofs: each takes the rows it owns. The dofs that are coupled this way
+     * must be among those of Condition::add_couplings().
+     */
+    void
+    add_replicated(
+      const dealii::FullMatrix<double>                   &matrix,
+      const dealii::Vector<double>                       &forces,
+      const std::vector<dealii::types::global_dof_index> &dofs) const;
+
     /** Minus the matrix times prescribed increments, if that is asked for. */
     void
     add_lifted(const dealii::FullMatrix<double>                   &matrix,
@@ -151,8 +162,8 @@ namespace alveolus
 
     /**
      * Groups of degrees of freedom, beyond those of one cell, that add_forces()
-     * couples with each other; valid from begin_step() on, until
-     * couplings_revision() changes.
+     * couples with each other, the same on every process; valid from
+     * begin_step() on, until couplings_revision() changes.
      */
     virtual void
     add_couplings(DofGroups & /*couplings*/) const

@@ -8,9 +8,9 @@ namespace alveolus
 {
   /**
    * Unilateral contact between boundaries of one mesh, frictionless or
-   * sticking, by an augmented Lagrangian (see ContactPair). In the plane and on
-   * one process only. The multipliers belong to places on the boundary by their
-   * relative arc length, so they survive rezoning and remeshing.
+   * sticking, by an augmented Lagrangian (see ContactPair), in the plane. The
+   * multipliers belong to places on the boundary by their relative arc length,
+   * so they survive rezoning and remeshing.
    */
   template <int dim>
   class ContactCondition : public Condition<dim>

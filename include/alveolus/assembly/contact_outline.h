@@ -67,8 +67,9 @@ namespace alveolus
 
   /**
    * The lines of named boundary pieces of a plane mesh, each with its body on
-   * the left, and how they follow each other. Deformed positions are kept by
-   * the user, one point for each node of the outline.
+   * the left, and how they follow each other; the same on every process.
+   * Deformed positions are kept by the user, one point for each node of the
+   * outline.
    */
   class ContactOutline
   {
@@ -92,6 +93,7 @@ namespace alveolus
     ContactOutline() = default;
 
     /**
+     * (Collective.)
      * @param list names of boundary pieces, separated by commas
      * @throws InputError for an unknown name, or where more than two of the
      *         lines meet in a point
@@ -100,7 +102,7 @@ namespace alveolus
                    const std::string &list,
                    const std::string &where);
 
-    /** Values of a nodal vector at the nodes of the outline. */
+    /** Values of a nodal vector at the nodes of the outline (collective). */
     std::vector<dealii::Point<2>>
     get(const NodalVector &field) const;
 
@@ -124,6 +126,10 @@ namespace alveolus
     std::vector<NodeId>                                         nodes;
     std::vector<std::array<dealii::types::global_dof_index, 2>> dofs;
     unsigned int n_nodes_per_edge = 2; ///< degree + 1
+
+  private:
+    MPI_Comm          communicator = MPI_COMM_SELF;
+    std::vector<bool> owned; ///< of the nodes, by this process
   };
 } // namespace alveolus
 

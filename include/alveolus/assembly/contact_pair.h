@@ -43,6 +43,9 @@ namespace alveolus
    * e (s + r) + q, until no coefficient changes by more than e times the
    * tolerance of length. What is left of the gap is zero in the mean; locally,
    * where kinked lines do not fit each other, the penalty alone bounds it.
+   * Every process knows both outlines and computes all of it, which is little
+   * beside the cells, and takes its rows of forces and matrix.
+   *
    * (Segments and multipliers are those of mortar methods, e.g. Puso and
    * Laursen, Comput. Methods Appl. Mech. Eng. 193 (2004) 601-629; the gap is
    * kept at the points, so that none of them goes deep.)

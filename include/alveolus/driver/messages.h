@@ -22,6 +22,13 @@ namespace alveolus
   }
 
   /**
+   * What may help a run that no step is short enough for, by the cause of the
+   * last rejection (Verdict::cause).
+   */
+  std::string
+  advice_for(const std::string &cause);
+
+  /**
    * Do on the first process what only it does (files); if that fails, all
    * processes throw the same error instead of waiting for each other.
    */

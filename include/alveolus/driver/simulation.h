@@ -87,6 +87,7 @@ namespace alveolus
       unsigned int unconverged_rezonings    = 0;
       unsigned int skipped_rezonings        = 0;
       unsigned int quality_warnings         = 0;
+      unsigned int at_round_off             = 0; ///< steps, see Equilibrium
       unsigned int max_iterations_of_a_step = 0;
       double       smallest_quality         = 1.;
       double       largest_transfer_error   = 0.;

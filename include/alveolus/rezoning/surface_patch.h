@@ -32,6 +32,10 @@ namespace alveolus
                  const std::string      &name,
                  const std::string      &where);
 
+    /** Once, before harmonic(), on the process that calls it. */
+    void
+    factorise();
+
     /**
      * Positions of all nodes with the displacement from the initial ones that
      * is harmonic between the held ones: sum over the neighbours j of w_ij (d_j
@@ -73,8 +77,6 @@ namespace alveolus
     find_nodes(const Nodes<3>    &mesh_nodes,
                const std::string &name,
                const std::string &where);
-    void
-    factorise();
     Frame
     fit(const std::vector<Place> &x, const unsigned int i) const;
 

@@ -12,7 +12,9 @@ namespace alveolus
    * harmonic displacement between the rim and the nodes that earlier rules set,
    * then, unless the surface is part of the mesh only, back onto the surface
    * through the Lagrangian positions (SurfacePatch).
-   * The surface is replicated on every process; three dimensions only.
+   * Every process knows the surfaces; the harmonic displacement of each is
+   * solved for on one of them, the way back onto the surface is found by the
+   * owner of each node. Three dimensions only.
    */
   class SurfaceRule : public RezoningRule<3>
   {
@@ -41,9 +43,24 @@ namespace alveolus
     }
 
   private:
-    std::vector<std::string>  on;
-    bool                      stay = true;
+    std::vector<std::string> on;
+    bool                     stay = true;
+    /** Patches first, ..., last - 1 none of which holds what another frees. */
+    struct Batch
+    {
+      unsigned int first, last;
+    };
+
+    /** Harmonic positions of the nodes of a batch, patch by patch
+     * (collective). */
+    std::vector<std::vector<SurfacePatch::Place>>
+    harmonic(const Batch       &batch,
+             const Nodes<3>    &nodes,
+             const NodalVector &proposed) const;
+
     std::vector<SurfacePatch> patches;
+    std::vector<unsigned int> solver; ///< process, of each patch
+    std::vector<Batch>        batches;
     std::vector<NodeId>       touched;
   };
 } // namespace alveolus

@@ -29,6 +29,8 @@ namespace alveolus
     double       energy_moved    = 0.; ///< on the moved mesh, see CellKernel
     double dissipation = 0.; ///< plastic work of the increment [mJ (per mm)]
     double force_scale = 0.; ///< see AssemblyResult
+    /** If it ended there: what round-off makes of the residual, relative. */
+    double round_off = 0.;
     /** L1 norm of the residual before the step over the internal forces. */
     double imbalance = 0.;
   };
@@ -38,8 +40,10 @@ namespace alveolus
    * The prescribed increments enter through the first linear system (which sees
    * the tangent of the last state) or an extrapolation of the last increment;
    * after that only unconstrained dofs change. Where a condition has
-   * multipliers, Newton's method is repeated until they have settled. Writes
-   * trial history only.
+   * multipliers, Newton's method is repeated until they have settled. Where the
+   * residual no longer falls and is what round-off makes (nearly incompressible
+   * or very different materials), it ends above the tolerance, which the report
+   * tells. Writes trial history only.
    */
   template <int dim>
   class Equilibrium
@@ -153,9 +157,13 @@ namespace alveolus
   private:
     void
     set_constraints(const Interval &interval);
-    /** Make the matrix, anew if conditions couple other dofs than before. */
+    /** Tell all processes of the constraints of coupled dofs (collective). */
     void
-    update_system();
+    share_constraints();
+    /** Set the constraints and make the matrix, anew if conditions couple other
+     * dofs than before. */
+    void
+    update_system(const Interval &interval);
     /** Let the conditions improve their multipliers; whether any did. */
     bool
     augment();
@@ -170,6 +178,12 @@ namespace alveolus
     bool
     expect_convergence(const std::vector<double> &residuals,
                        const std::size_t          first);
+    /**
+     * L1 norm of what round-off of the displacements makes of the residual, at
+     * the increment and its residual; leaves both as they are.
+     */
+    double
+    round_off_residual();
     /** Residual without increment under the loads already begun. */
     AssemblyResult
     assemble_without_increment();
@@ -183,10 +197,12 @@ namespace alveolus
     dealii::AffineConstraints<double> held;       ///< the same, homogeneous
     std::unique_ptr<LinearSystem>     system;
     std::vector<unsigned int> coupled; ///< revisions the system was made for
-    HangingNodes<dim>         hanging;
-    NodalVector               residual_vector;
-    NodalVector               lifted;
-    const Imbalance          *held_imbalance = nullptr;
+    /** On several processes: dofs of add_couplings(), ascending. */
+    std::vector<dealii::types::global_dof_index> coupled_dofs;
+    HangingNodes<dim>                            hanging;
+    NodalVector                                  residual_vector;
+    NodalVector                                  lifted;
+    const Imbalance                             *held_imbalance = nullptr;
     /** c of r_{k+1} = c r_k^2 for relative residuals; 0 is unknown. */
     double contraction = 0.;
   };
