@@ -694,9 +694,9 @@ TEST(RemodelledBone, ReturnIsOnTheYieldSurface)
     }
 }
 
-// A record beyond the yield surface, as a transfer leaves it: its energy is that
-// of its elastic strain, which flow takes down by more than the yield stress
-// takes up (the stress falls to it on the way).
+// A record beyond the yield surface, as a transfer leaves it: its energy is
+// that of its elastic strain, which flow takes down by more than the yield
+// stress takes up (the stress falls to it on the way).
 TEST(RemodelledBone, EnergyOfARecordBeyondTheYieldSurface)
 {
   for (const std::string law : {"isochoric", "effective"})
