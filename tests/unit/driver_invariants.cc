@@ -258,16 +258,41 @@ TEST(EnergyBooks, Contact)
 
 
 // Density lost under load: the energy it takes at fixed strain is booked from
-// the materials, not from forces.
+// the materials, not from forces. Without plasticity: bone that loses density
+// in the state of yielding is beyond the yield surface when the next step
+// begins, which costs an order.
 TEST(EnergyBooks, Remodelling)
 {
+  if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    GTEST_SKIP() << "many steps, nothing that several processes change";
+  const std::string name = "../tests/scene/extruded-plane";
   const Sets bone = {"Mesh/grid generator/Arguments=6, 3 : 0, 0 : 8, 4 : true",
-                     "Rezoning/Names="};
-  const History h = run("../tests/scene/extruded-plane", steps(8, 4., bone));
+                     "Rezoning/Names=",
+                     "Materials/bone/Yield stress=1e5"};
+  const History h = run(name, steps(16, 4., bone));
   EXPECT_GT(std::abs(h.last("energy by remodelling [mJ]")),
-            10. * std::abs(h.last("energy balance")) *
-              h.last("external work [mJ]"));
-  EXPECT_NEAR(falls_by("../tests/scene/extruded-plane", 4, 4., bone), 4., 1.);
+            0.5 * h.last("external work [mJ]"));
+  EXPECT_NEAR(falls_by(name, 16, 4., bone), 4., 0.8);
+}
+
+
+
+// Transfer takes points with different fabric together and leaves some beyond
+// their yield surfaces. What flow takes from them in the next step is not
+// booked at the transfer, too: that once was 0.9 % here.
+TEST(EnergyBooks, FlowAfterTransfer)
+{
+  if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    GTEST_SKIP() << "many steps, nothing that several processes change";
+  const History h = run("academic",
+                        {"Mesh/Type=file",
+                         "Mesh/file/File name=" ALVEOLUS_SOURCE_DIR
+                         "/meshes/academic-coarse.msh",
+                         "Time/End=20",
+                         "Time/Initial step=0.5",
+                         "Time/Maximum step=0.5"});
+  EXPECT_GT(h.last("plastic dissipation [mJ]"), 100.);
+  EXPECT_LT(std::abs(h.last("energy balance")), 1e-3);
 }
 
 
