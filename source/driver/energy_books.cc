@@ -38,9 +38,8 @@ namespace alveolus
   EnergyBooks<dim>::EnergyBooks(Model<dim> &model)
   {
     model.staggered_step->book_energy();
-    in_cells   = stored_in_cells(model);
-    sum.layers = stored_in_layers(model);
-    sum.stored = sum.initial = in_cells + sum.layers;
+    take_stock(model);
+    sum.initial = sum.stored;
   }
 
 
@@ -229,15 +228,24 @@ namespace alveolus
 
 
   template <int dim>
-  void
-  EnergyBooks<dim>::book_transfer(const Model<dim> &model)
+  double
+  EnergyBooks<dim>::take_stock(const Model<dim> &model)
   {
     const double before = sum.stored;
     in_cells            = stored_in_cells(model);
     sum.layers          = stored_in_layers(model);
     sum.stored          = in_cells + sum.layers;
-    book(sum.transfer, sum.stored - before);
-    begun = false;
+    begun               = false;
+    return sum.stored - before;
+  }
+
+
+
+  template <int dim>
+  void
+  EnergyBooks<dim>::book_transfer(const Model<dim> &model)
+  {
+    book(sum.transfer, take_stock(model));
   }
 
 
@@ -247,12 +255,7 @@ namespace alveolus
   EnergyBooks<dim>::book_remesh(Model<dim> &model)
   {
     model.staggered_step->book_energy();
-    const double before = sum.stored;
-    in_cells            = stored_in_cells(model);
-    sum.layers          = stored_in_layers(model);
-    sum.stored          = in_cells + sum.layers;
-    book(sum.remeshing, sum.stored - before);
-    begun = false;
+    book(sum.remeshing, take_stock(model));
   }
 
 

@@ -372,10 +372,7 @@ namespace alveolus
   mesh_unstructured_area(const PlanarArea          &area,
                          const std::vector<Points> &loops,
                          const PlanarMesher        &mesher,
-                         const std::string         &name,
-                         const std::string         &output_directory,
-                         const std::string         &where,
-                         const MPI_Comm            &communicator)
+                         const MeshingJob          &job)
   {
     AreaMesh     best;
     std::string  failure;
@@ -384,7 +381,7 @@ namespace alveolus
     for (const Points &loop : loops)
       {
         if (loop.size() % 2 != 0)
-          throw RunError(where,
+          throw RunError(job.where,
                          "the boundary of the area '" + area.name +
                            "' has an odd number of edges",
                          "no mesh of quads has: add or remove one");
@@ -393,28 +390,22 @@ namespace alveolus
       }
     for (const PlanarMesherOptions &options : mesher.attempts)
       {
-        const std::string file =
-          name + (++n_runs == 1 ? "" : "-" + std::to_string(n_runs));
+        const MeshingJob attempt =
+          ++n_runs == 1 ? job : job.part(std::to_string(n_runs));
         AreaMesh candidate;
         try
           {
-            const std::string text =
-              run_gmsh(script(area, loops, starts, options),
-                       2,
-                       file,
-                       output_directory,
-                       mesher.gmsh,
-                       where,
-                       communicator);
+            const std::string text = run_gmsh(
+              script(area, loops, starts, options), 2, mesher.gmsh, attempt);
             MeshDescription<2> raw;
             try
               {
-                raw = read_msh<2>(text, file + ".msh");
+                raw = read_msh<2>(text, attempt.name + ".msh");
               }
             catch (const InputError &error)
               {
                 // e.g. a triangle that was left: no fault of the user
-                throw RunError(where, error.what(), "");
+                throw RunError(job.where, error.what(), "");
               }
             candidate = fitted(raw, loops, starts);
           }
@@ -444,7 +435,7 @@ namespace alveolus
           break;
       }
     if (best.quads.empty() || !(best.quality > 0.))
-      throw RunError(where,
+      throw RunError(job.where,
                      "no valid mesh of quads of the area '" + area.name +
                        "' is found in " + std::to_string(n_runs) + " attempts" +
                        (failure.empty() ? "" : " (" + failure + ")"),

@@ -41,7 +41,7 @@ namespace alveolus
       for (long j = -1; j <= 1; ++j)
         for (long k = -1; k <= 1; ++k)
           {
-            const auto found = at.find({box[0] + i, box[1] + j, box[2] + k});
+            const auto found = at.find({{box[0] + i, box[1] + j, box[2] + k}});
             if (found != at.end() &&
                 mesh.vertices[found->second].distance(x) < tolerance)
               return found->second;
@@ -128,7 +128,7 @@ namespace alveolus
         DescribedElement<1> element;
         element.tag      = tag;
         element.number   = mesh.lines.size() + 1;
-        element.vertices = {line.first, line.second};
+        element.vertices = {{line.first, line.second}};
         mesh.lines.push_back(element);
       }
     mesh.curves[name].insert(tag);

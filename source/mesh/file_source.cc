@@ -60,11 +60,11 @@ namespace alveolus
                 "script, add --allow-scripts to the command line");
           text = run_gmsh(text,
                           dim,
-                          "mesh-from-script",
-                          output_directory,
                           GmshSettings(),
-                          "Mesh / file / File name",
-                          communicator);
+                          {"mesh-from-script",
+                           output_directory,
+                           "Mesh / file / File name",
+                           communicator});
         }
       MeshDescription<dim> description = read_msh<dim>(text, name);
       const MeshRepairs    repairs =

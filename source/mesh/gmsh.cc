@@ -30,25 +30,33 @@ namespace alveolus
 
 
 
+  MeshingJob
+  MeshingJob::part(const std::string &suffix) const
+  {
+    MeshingJob job = *this;
+    job.name += "-" + suffix;
+    std::replace(job.name.begin(), job.name.end(), ' ', '-');
+    return job;
+  }
+
+
+
   std::string
   run_gmsh(const std::string  &geometry,
            const unsigned int  dim,
-           const std::string  &name,
-           const std::string  &output_directory,
            const GmshSettings &settings,
-           const std::string  &where,
-           const MPI_Comm     &communicator)
+           const MeshingJob   &job)
   {
-    return text_from_root(communicator, [&]() -> std::string {
+    return text_from_root(job.communicator, [&]() -> std::string {
       // Absolute paths: none can be taken for an option. The name stays a name
       // in this folder, whatever it was made of.
-      std::string stem = name;
+      std::string stem = job.name;
       for (char &c : stem)
         if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' &&
             c != '_')
           c = '-';
       const std::filesystem::path folder =
-        std::filesystem::absolute(output_directory);
+        std::filesystem::absolute(job.output_directory);
       const std::string script  = (folder / (stem + ".geo")).string();
       const std::string result  = (folder / (stem + ".msh")).string();
       const std::string options = script + ".opt";
@@ -61,7 +69,7 @@ namespace alveolus
           std::filesystem::remove(file, error);
           if (std::filesystem::symlink_status(file).type() !=
               std::filesystem::file_type::not_found)
-            throw InputError(where,
+            throw InputError(job.where,
                              "'" + file + "' cannot be removed",
                              "remove it, or choose another output folder");
         }
@@ -82,13 +90,13 @@ namespace alveolus
                                             {{"GMSH_HOME", "/dev/null"}});
       const std::string   program    = "'" + name_of_it + "'";
       if (!run.started)
-        throw InputError(where,
+        throw InputError(job.where,
                          "the mesher " + program + " " + run.summary(),
                          "install gmsh (Debian: apt-get install gmsh), name "
                          "it in the environment variable ALVEOLUS_MESHER, or "
                          "read a finished mesh with the mesh type 'file'");
       if (!run.succeeded())
-        throw RunError(where,
+        throw RunError(job.where,
                        "the mesher " + program + " " + run.summary() +
                          (run.last_words().empty()
                             ? ""
@@ -99,10 +107,10 @@ namespace alveolus
                              " by hand, other parameters, or the mesh type "
                              "'file' with a finished mesh");
       if (!std::filesystem::exists(result))
-        throw RunError(where,
+        throw RunError(job.where,
                        "the mesher " + program + " ended without a mesh",
                        "check that ALVEOLUS_MESHER names gmsh");
-      return read_text_file(MPI_COMM_SELF, result, where);
+      return read_text_file(MPI_COMM_SELF, result, job.where);
     });
   }
 } // namespace alveolus

@@ -116,10 +116,7 @@ namespace alveolus
     mesh_area(const PlanarArea   &area,
               const CurveNodes   &nodes,
               const PlanarMesher &mesher,
-              const std::string  &name,
-              const std::string  &output_directory,
-              const std::string  &where,
-              const MPI_Comm     &communicator,
+              const MeshingJob   &job,
               Indices            &boundary)
     {
       std::vector<Points> loops;
@@ -134,7 +131,7 @@ namespace alveolus
         }
 
       if (area.prepared)
-        return prepared_mesh(*area.prepared, loops, where);
+        return prepared_mesh(*area.prepared, loops, job.where);
       if (area.structured)
         {
           const auto           &loop = area.loops[0];
@@ -148,7 +145,7 @@ namespace alveolus
             return mesh_capped_area(sides, area.caps, area.name);
           if (sides[0].size() != sides[2].size() ||
               sides[1].size() != sides[3].size())
-            throw RunError(where,
+            throw RunError(job.where,
                            "the structured area '" + area.name +
                              "' has unequal numbers of segments on opposite "
                              "sides",
@@ -156,10 +153,7 @@ namespace alveolus
           return mesh_structured_area(sides);
         }
 
-      std::string file = name + "-" + area.name;
-      std::replace(file.begin(), file.end(), ' ', '-');
-      return mesh_unstructured_area(
-        area, loops, mesher, file, output_directory, where, communicator);
+      return mesh_unstructured_area(area, loops, mesher, job.part(area.name));
     }
   } // namespace
 
@@ -179,16 +173,13 @@ namespace alveolus
   MeshDescription<2>
   mesh_planar_geometry(const PlanarGeometry &geometry,
                        const PlanarMesher   &mesher,
-                       const std::string    &name,
-                       const std::string    &output_directory,
-                       const std::string    &where,
-                       const MPI_Comm       &communicator,
+                       const MeshingJob     &job,
                        PlanarMeshReport     &report)
   {
     report = PlanarMeshReport();
     const CurveNodes   nodes(geometry);
     MeshDescription<2> mesh;
-    mesh.source   = name;
+    mesh.source   = job.name;
     mesh.vertices = nodes.positions;
     mesh.curves   = geometry.curve_names;
     mesh.regions  = geometry.region_names;
@@ -197,14 +188,7 @@ namespace alveolus
     for (const PlanarArea &area : geometry.areas)
       {
         Indices            boundary;
-        const AreaMesh     part  = mesh_area(area,
-                                        nodes,
-                                        mesher,
-                                        name,
-                                        output_directory,
-                                        where,
-                                        communicator,
-                                        boundary);
+        const AreaMesh     part = mesh_area(area, nodes, mesher, job, boundary);
         const unsigned int shift = mesh.vertices.size() - boundary.size();
         mesh.vertices.insert(mesh.vertices.end(),
                              part.vertices.begin() + boundary.size(),
@@ -244,7 +228,7 @@ namespace alveolus
         const auto node =
           std::find(mesh.vertices.begin(), mesh.vertices.end(), point.second);
         if (node == mesh.vertices.end())
-          throw RunError(where,
+          throw RunError(job.where,
                          "the point '" + point.first +
                            "' is no vertex of the new mesh",
                          "let it be on a curve");
@@ -258,7 +242,7 @@ namespace alveolus
       }
     catch (const InputError &error)
       {
-        throw RunError(where, error.what(), "");
+        throw RunError(job.where, error.what(), "");
       }
     return mesh;
   }

@@ -152,13 +152,11 @@ namespace alveolus
           const std::string name =
             "tooth-in-block" +
             (++number == 1 ? "" : "-" + std::to_string(number));
-          const std::string text = run_gmsh(geometry(attempt),
-                                            2,
-                                            name,
-                                            output_directory,
-                                            gmsh,
-                                            section,
-                                            communicator);
+          const std::string text =
+            run_gmsh(geometry(attempt),
+                     2,
+                     gmsh,
+                     {name, output_directory, section, communicator});
           try
             {
               MeshDescription<2> candidate = read_msh<2>(text, name + ".msh");

@@ -160,14 +160,11 @@ namespace alveolus
       refined.tooth_growth /= refinement;
       refined.bone_growth /= refinement;
       PlanarMeshReport         report;
-      const MeshDescription<2> description =
-        mesh_planar_geometry(socket_geometry(tooth, bone, refined, section),
-                             mesher,
-                             "tooth-in-socket",
-                             output_directory,
-                             section,
-                             communicator,
-                             report);
+      const MeshDescription<2> description = mesh_planar_geometry(
+        socket_geometry(tooth, bone, refined, section),
+        mesher,
+        {"tooth-in-socket", output_directory, section, communicator},
+        report);
       if (report.smallest_scaled_jacobian < least_quality)
         throw InputError(section + " / Least quality",
                          "the smallest scaled Jacobian is " +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
 #include <alveolus/geometry/cubic_spline.h>
+#include <alveolus/mesh/best_first.h>
 #include <alveolus/mesh/planar_mesher.h>
 #include <alveolus/remeshing/outline_remesher.h>
 #include <alveolus/remeshing/strip_ends.h>
@@ -256,9 +257,7 @@ namespace alveolus
   std::map<unsigned int, std::shared_ptr<const AreaMesh>>
   OutlineRemesher::common_areas(const GatheredMesh &mesh,
                                 const NamedSets<2> &names,
-                                const std::string  &output_directory,
-                                const std::string  &name,
-                                const MPI_Comm     &communicator) const
+                                const MeshingJob   &job) const
   {
     const BodyOutline outline =
       extract_outline(mesh, names, {}, corner_angle * numbers::PI / 180.);
@@ -315,14 +314,8 @@ namespace alveolus
             for (const auto &loop : area.loops)
               loops.push_back(loop_positions(geometry, loop));
             result[outline.areas[a].cells[0]] =
-              std::make_shared<const AreaMesh>(
-                mesh_unstructured_area(area,
-                                       loops,
-                                       mesher,
-                                       name + "-" + std::to_string(a + 1),
-                                       output_directory,
-                                       where,
-                                       communicator));
+              std::make_shared<const AreaMesh>(mesh_unstructured_area(
+                area, loops, mesher, job.part(std::to_string(a + 1))));
           }
       }
     return result;
@@ -335,11 +328,10 @@ namespace alveolus
                               const std::string      &output_directory,
                               const std::string      &name) const
   {
-    const NamedSets<2> &names        = old.mesh.names;
-    const MPI_Comm      communicator = old.communicator();
-    const GatheredMesh  mesh         = gather_mesh(old);
-    const auto          common =
-      common_areas(mesh, names, output_directory, name, communicator);
+    const NamedSets<2> &names = old.mesh.names;
+    const MeshingJob    job{name, output_directory, where, old.communicator()};
+    const GatheredMesh  mesh   = gather_mesh(old);
+    const auto          common = common_areas(mesh, names, job);
 
     // All meshes of the zones at the ends of strips, best first
     std::set<types::material_id> strip_materials;
@@ -353,16 +345,8 @@ namespace alveolus
       largest_area_change * area_of(mesh, strip_materials);
     settings.mesher = mesher;
     settings.mesher.attempts.resize(4);
-    const StripEnds ends = mesh_strip_ends(mesh,
-                                           names,
-                                           strip_materials,
-                                           strip_ends,
-                                           zone_lengths,
-                                           settings,
-                                           name,
-                                           output_directory,
-                                           where,
-                                           communicator);
+    const StripEnds ends = mesh_strip_ends(
+      mesh, names, strip_materials, strip_ends, zone_lengths, settings, job);
 
     std::vector<RemeshCandidate<2>> result;
     for (const auto &combination : ends.combinations(n_candidates))
@@ -391,16 +375,13 @@ namespace alveolus
           put_zone(geometry, outline, *choice);
 
         PlanarMeshReport   report;
-        MeshDescription<2> description = mesh_planar_geometry(geometry,
-                                                              mesher,
-                                                              name,
-                                                              output_directory,
-                                                              where,
-                                                              communicator,
-                                                              report);
+        MeshDescription<2> description =
+          mesh_planar_geometry(geometry, mesher, job, report);
         RemeshCandidate<2> candidate;
-        candidate.mesh =
-          build_named_mesh(description, line_ids(outline), names, communicator);
+        candidate.mesh    = build_named_mesh(description,
+                                          line_ids(outline),
+                                          names,
+                                          job.communicator);
         candidate.quality = report.smallest_scaled_jacobian;
         std::ostringstream text;
         text << name << ": " << description.cells.size() << " cells, "
@@ -410,16 +391,10 @@ namespace alveolus
         for (std::size_t e = 0; e < chosen.size(); ++e)
           text << "; " << strip_ends[e] << ": " << chosen[e]->mesh.description;
         text << ends.counts;
-        candidate.description      = text.str();
-        candidate.mesh.description = text.str();
+        candidate.describe(text.str());
         result.push_back(std::move(candidate));
       }
-    std::stable_sort(result.begin(),
-                     result.end(),
-                     [](const auto &a, const auto &b) {
-                       return std::lround(1e3 * a.quality) >
-                              std::lround(1e3 * b.quality);
-                     });
+    sort_best_first(result, [](const auto &mesh) { return mesh.quality; });
     return result;
   }
 } // namespace alveolus

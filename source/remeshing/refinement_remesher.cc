@@ -157,8 +157,7 @@ namespace alveolus
            << " cells of " << mesh.triangulation->n_global_levels()
            << " sizes, before "
            << old.mesh.triangulation->n_global_active_cells();
-      result[0].description = text.str();
-      mesh.description      = text.str();
+      result[0].describe(text.str());
       return result;
     }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
+#include <alveolus/mesh/best_first.h>
 #include <alveolus/remeshing/strip_ends.h>
 
 #include <algorithm>
@@ -46,10 +47,7 @@ namespace alveolus
                   const std::vector<std::string>     &ends,
                   const std::vector<double>          &lengths,
                   const ZoneSettings                 &settings,
-                  const std::string                  &name,
-                  const std::string                  &output_directory,
-                  const std::string                  &where,
-                  const MPI_Comm                     &communicator)
+                  const MeshingJob                   &job)
   {
     StripEnds          result;
     std::ostringstream counts;
@@ -71,15 +69,11 @@ namespace alveolus
               },
               lengths[l],
               end);
-            std::string file = name + "-" + end + "-" + std::to_string(l + 1);
-            std::replace(file.begin(), file.end(), ' ', '-');
-            ZoneMeshes zones = mesh_zone(mesh,
-                                         zone,
-                                         settings,
-                                         file,
-                                         output_directory,
-                                         where,
-                                         communicator);
+            ZoneMeshes zones =
+              mesh_zone(mesh,
+                        zone,
+                        settings,
+                        job.part(end + "-" + std::to_string(l + 1)));
             n_tried += zones.n_tried;
             n_invalid += zones.n_invalid;
             n_flat += zones.n_flat;
@@ -96,18 +90,14 @@ namespace alveolus
         for (const unsigned int n : too_coarse)
           counts << ", " << n << " edges would change the area too much";
         if (choices.empty())
-          throw RunError(where,
+          throw RunError(job.where,
                          "no valid mesh of the zone at '" + end + "'" +
                            counts.str(),
                          "remesh earlier, or try other 'Zone lengths' and "
                          "'Strip end edges'");
-        // To three digits, so that the order is no matter of round-off
-        std::stable_sort(choices.begin(),
-                         choices.end(),
-                         [](const ZoneChoice &a, const ZoneChoice &b) {
-                           return std::lround(1e3 * a.mesh.mesh.quality) >
-                                  std::lround(1e3 * b.mesh.mesh.quality);
-                         });
+        sort_best_first(choices, [](const ZoneChoice &choice) {
+          return choice.mesh.mesh.quality;
+        });
         result.choices.push_back(std::move(choices));
       }
     result.counts = counts.str();

@@ -125,14 +125,11 @@ namespace alveolus
             }
         }
       PlanarMeshReport         report;
-      const MeshDescription<2> description =
-        mesh_planar_geometry(geometry,
-                             PlanarMesher(),
-                             name,
-                             output_directory,
-                             where,
-                             old.communicator(),
-                             report);
+      const MeshDescription<2> description = mesh_planar_geometry(
+        geometry,
+        PlanarMesher(),
+        {name, output_directory, where, old.communicator()},
+        report);
       if (!(report.smallest_scaled_jacobian > 0.))
         throw RunError(where,
                        "the blocks divided anew have inverted cells",
@@ -148,8 +145,7 @@ namespace alveolus
            << description.vertices.size()
            << " vertices, smallest scaled Jacobian " << std::setprecision(3)
            << result[0].quality << changes.str();
-      result[0].description      = text.str();
-      result[0].mesh.description = text.str();
+      result[0].describe(text.str());
       return result;
     }
 

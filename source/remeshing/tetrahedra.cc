@@ -78,32 +78,24 @@ namespace alveolus
     const std::vector<Point<3>>                    &vertices,
     const std::vector<std::array<unsigned int, 3>> &triangles,
     const TetrahedraSettings                       &settings,
-    const std::string                              &name,
-    const std::string                              &output_directory,
-    const std::string                              &where,
-    const MPI_Comm                                 &communicator)
+    const MeshingJob                               &job)
   {
-    const std::string surface = name + "-surface.msh";
-    text_from_root(communicator, [&]() -> std::string {
-      write_text_file(path_below(output_directory, surface),
+    const std::string surface = job.name + "-surface.msh";
+    text_from_root(job.communicator, [&]() -> std::string {
+      write_text_file(path_below(job.output_directory, surface),
                       surface_file(vertices, triangles));
       return "";
     });
-    const std::string text = run_gmsh(script(surface, settings),
-                                      3,
-                                      name,
-                                      output_directory,
-                                      settings.gmsh,
-                                      where,
-                                      communicator);
-    MshSections       sections;
+    const std::string text =
+      run_gmsh(script(surface, settings), 3, settings.gmsh, job);
+    MshSections sections;
     try
       {
-        sections = read_msh_sections(text, name + ".msh");
+        sections = read_msh_sections(text, job.name + ".msh");
       }
     catch (const InputError &error)
       {
-        throw RunError(where, error.what(), ""); // no fault of the user
+        throw RunError(job.where, error.what(), ""); // no fault of the user
       }
 
     // The mesher numbers the nodes anew: those of the surface by their places
@@ -142,7 +134,7 @@ namespace alveolus
         mesh.vertices.push_back(x);
       }
     if (std::count(found.begin(), found.end(), false) != 0)
-      throw RunError(where, "the mesher left out nodes of the surface", "");
+      throw RunError(job.where, "the mesher left out nodes of the surface", "");
 
     constexpr int tetrahedron = 4; // gmsh's number of the element type
     double        volume      = 0.;
@@ -182,10 +174,10 @@ namespace alveolus
                     (vertices[face[2]] - Point<3>()) / 6.;
         std::sort(face.begin(), face.end());
         if (faces.erase(face) == 0)
-          throw RunError(where, "the mesher changed the surface", "");
+          throw RunError(job.where, "the mesher changed the surface", "");
       }
     if (!faces.empty() || !(std::abs(volume - enclosed) < 1e-6 * enclosed))
-      throw RunError(where,
+      throw RunError(job.where,
                      "the mesher filled another volume than asked for",
                      "");
     return mesh;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
+#include <alveolus/mesh/best_first.h>
 #include <alveolus/mesh/describe_mesh.h>
 #include <alveolus/mesh/mesh_builder.h>
 #include <alveolus/remeshing/flat_tetrahedra.h>
@@ -123,6 +124,7 @@ namespace alveolus
         {1, 1.}, {10, 1.}, {4, 1.}, {1, 0.85}, {10, 0.85}, {1, 1.2}};
       std::vector<RemeshCandidate<3>> result;
       std::string                     failure;
+      const MeshingJob job{name, output_directory, where, old.communicator()};
       for (unsigned int k = 0; k < n_attempts; ++k)
         try
           {
@@ -134,9 +136,8 @@ namespace alveolus
                    mesh,
                    triangles,
                    with,
-                   output_directory,
-                   name,
-                   k == 0 ? "" : "-attempt-" + std::to_string(k + 1)));
+                   job,
+                   k == 0 ? "" : "attempt-" + std::to_string(k + 1)));
           }
         catch (const RunError &error)
           {
@@ -147,12 +148,7 @@ namespace alveolus
                        "no mesh is made in " + std::to_string(n_attempts) +
                          " attempts (" + failure + ")",
                        "change 'Edge length factor' a little");
-      std::stable_sort(result.begin(),
-                       result.end(),
-                       [](const auto &a, const auto &b) {
-                         return std::lround(1e3 * a.quality) >
-                                std::lround(1e3 * b.quality);
-                       });
+      sort_best_first(result, [](const auto &mesh) { return mesh.quality; });
       return result;
     }
 
@@ -189,8 +185,7 @@ namespace alveolus
          const MeshDescription<3> &mesh,
          const SurfaceMesh        &triangles,
          const TetrahedraSettings &with,
-         const std::string        &output_directory,
-         const std::string        &name,
+         const MeshingJob         &job,
          const std::string        &attempt) const
     {
       const BodySurface           &body = triangles.body.body;
@@ -199,25 +194,24 @@ namespace alveolus
       FlatTetrahedra               flat;
       for (unsigned int c = 0; c < body.components.size(); ++c)
         {
+          const MeshingJob body_job = job.part("body-" + std::to_string(c + 1));
           filled.push_back(
             fill(triangles,
                  c,
                  with,
-                 output_directory,
-                 name + "-body-" + std::to_string(c + 1) + attempt,
-                 old.communicator(),
+                 attempt.empty() ? body_job : body_job.part(attempt),
                  flat));
           n_tetrahedra += filled.back().mesh.cells.size();
         }
       HexMesh    hexes  = divide_into_hexahedra(triangles, filled, mesh);
       const auto report = optimise_hexahedra(hexes, triangles, good, n_sweeps);
-      hexes.description.source = name;
+      hexes.description.source = job.name;
 
       RemeshCandidate<3> candidate;
       candidate.mesh    = build_mesh(hexes.description, old.communicator());
       candidate.quality = report.after;
       std::ostringstream text;
-      text << name << ": " << hexes.description.cells.size() << " cells, "
+      text << job.name << ": " << hexes.description.cells.size() << " cells, "
            << hexes.description.vertices.size() << " vertices, of "
            << triangles.triangles.size() << " triangles (quality "
            << std::setprecision(3) << triangles.smallest_quality() << ") and "
@@ -226,8 +220,7 @@ namespace alveolus
            << " flat ones divided, " << flat.n_left
            << " left), smallest scaled Jacobian " << report.before << ", after "
            << report.n_sweeps << " sweeps " << report.after;
-      candidate.description      = text.str();
-      candidate.mesh.description = text.str();
+      candidate.describe(text.str());
       return candidate;
     }
 
@@ -236,9 +229,7 @@ namespace alveolus
     fill(const SurfaceMesh        &surface,
          const unsigned int        component,
          const TetrahedraSettings &with,
-         const std::string        &output_directory,
-         const std::string        &name,
-         const MPI_Comm           &communicator,
+         const MeshingJob         &job,
          FlatTetrahedra           &flat) const
     {
       const BodySurface &body = surface.body.body;
@@ -272,8 +263,7 @@ namespace alveolus
           triangles.push_back(local);
           patches.push_back(triangle.patch);
         }
-      result.mesh = fill_with_tetrahedra(
-        vertices, triangles, with, name, output_directory, where, communicator);
+      result.mesh = fill_with_tetrahedra(vertices, triangles, with, job);
       const FlatTetrahedra found =
         divide_flat_tetrahedra(result.mesh, triangles, patches);
       flat.n_divided += found.n_divided;

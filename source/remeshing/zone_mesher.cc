@@ -2,6 +2,7 @@
 #include <alveolus/base/errors.h>
 #include <alveolus/geometry/cubic_spline.h>
 #include <alveolus/geometry/grading.h>
+#include <alveolus/mesh/best_first.h>
 #include <alveolus/remeshing/zone_mesher.h>
 
 #include <deal.II/base/numbers.h>
@@ -229,24 +230,16 @@ namespace alveolus
 
       /** A mesh by gmsh, flat corners divided. */
       void
-      try_gmsh(const std::string &name,
-               const std::string &output_directory,
-               const std::string &where,
-               const MPI_Comm    &communicator)
+      try_gmsh(const MeshingJob &job)
       {
         PlanarArea area;
-        area.name   = name;
+        area.name   = job.name;
         area.growth = settings.growth;
         AreaMesh candidate;
         try
           {
-            candidate = mesh_unstructured_area(area,
-                                               {loop},
-                                               settings.mesher,
-                                               name,
-                                               output_directory,
-                                               where,
-                                               communicator);
+            candidate =
+              mesh_unstructured_area(area, {loop}, settings.mesher, job);
           }
         catch (const RunError &)
           {
@@ -362,10 +355,7 @@ namespace alveolus
   mesh_zone(const GatheredMesh &mesh,
             const StripZone    &zone,
             const ZoneSettings &settings,
-            const std::string  &name,
-            const std::string  &output_directory,
-            const std::string  &where,
-            const MPI_Comm     &communicator)
+            const MeshingJob   &job)
   {
     const Points old_rim = positions_of(mesh, zone.rim);
     const Points cut     = positions_of(mesh, zone.cut);
@@ -399,19 +389,10 @@ namespace alveolus
                                                settings.mesher.good_quality;
                                       });
         if (!good)
-          mesher.try_gmsh(name +
-                            (n_rim == 0 ? "" : "-" + std::to_string(n_rim)),
-                          output_directory,
-                          where,
-                          communicator);
+          mesher.try_gmsh(n_rim == 0 ? job : job.part(std::to_string(n_rim)));
       }
-    // To three digits, so that the order is no matter of round-off
-    std::stable_sort(result.meshes.begin(),
-                     result.meshes.end(),
-                     [](const ZoneMesh &a, const ZoneMesh &b) {
-                       return std::lround(1e3 * a.mesh.quality) >
-                              std::lround(1e3 * b.mesh.quality);
-                     });
+    sort_best_first(result.meshes,
+                    [](const ZoneMesh &entry) { return entry.mesh.quality; });
     return result;
   }
 } // namespace alveolus

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""check_documents.py SOURCE BUILD WORK [CLASS]
+"""check_documents.py SOURCE BUILD WORK [CLASS [PATTERN]]
 
 Takes every command out of README.md, CONTRIBUTING.md and doc/*.md (lines of code
 blocks, and words in code style, that begin like a command) and looks it up in
 commands.txt. A command that
 is not listed there is a failure; lines there that no document has are told. Then
 those of CLASS (default: short) are run, in a folder that looks like the source
-folder; build/alveolus is a wrapper that adds the options of commands.txt. Each
-must end with the exit code that commands.txt tells, 0 if none.
+folder (doc is a copy: some commands write there); build/alveolus is a wrapper that
+adds the options of commands.txt. Each must end with the exit code that commands.txt
+tells, 0 if none. With PATTERN only those of exactly this class that match it.
 
 commands.txt: lines `CLASS | COMMAND | exit=N options`. Classes:
 
@@ -97,7 +98,10 @@ def workplace(source, build, work):
     for entry in os.listdir(source):
         if entry.startswith(".") or entry.startswith("build") or entry == "output":
             continue
-        os.symlink(os.path.join(source, entry), os.path.join(work, entry))
+        if entry == "doc":
+            shutil.copytree(os.path.join(source, entry), os.path.join(work, entry))
+        else:
+            os.symlink(os.path.join(source, entry), os.path.join(work, entry))
     for entry in os.listdir(build):
         if entry != "alveolus":
             os.symlink(os.path.join(build, entry), os.path.join(work, "build", entry))
@@ -105,6 +109,7 @@ def workplace(source, build, work):
     with open(wrapper, "w", encoding="utf-8") as file:
         file.write("#!/usr/bin/env bash\n# The program with the options that shorten a run\n"
                    'eval "more=($ALVEOLUS_SHORT)"\n'
+                   '[[ " $* " == *" --threads "* ]] || more+=(--threads 1)\n'
                    f'exec {shlex.quote(os.path.join(build, "alveolus"))} "$@" "${{more[@]}}"\n')
     os.chmod(wrapper, 0o755)
 
@@ -112,6 +117,7 @@ def workplace(source, build, work):
 def main():
     source, build, work = map(os.path.abspath, sys.argv[1:4])
     wanted = sys.argv[4] if len(sys.argv) > 4 else "short"
+    pattern = sys.argv[5] if len(sys.argv) > 5 else ""
     listed = classes(os.path.join(source, "tests", "documents", "commands.txt"))
     documents = [os.path.join(source, n) for n in ("README.md", "CONTRIBUTING.md")]
     documents += sorted(glob.glob(os.path.join(source, "doc", "*.md")))
@@ -134,13 +140,16 @@ def main():
     n_run = 0
     for command in dict.fromkeys(found):
         kind, options = listed.get(plain(command), ("", ""))
-        if kind != wanted and (kind, wanted) != ("short", "slow"):
+        if kind != wanted and (pattern or (kind, wanted) != ("short", "slow")):
+            continue
+        if not re.search(pattern, command):
             continue
         expected = re.search(r"exit=(\d+)", options)
         expected = int(expected.group(1)) if expected else 0
         more = re.sub(r"exit=\d+", "", options).strip()
-        environment = dict(os.environ, ALVEOLUS_SHORT=("--threads 1 " + more))
-        environment["PATH"] = os.path.join(work, "build") + ":" + environment["PATH"]
+        environment = dict(os.environ, ALVEOLUS_SHORT=more)
+        # Debian's python3 first: it has the modules
+        environment["PATH"] = ":".join([os.path.join(work, "build"), "/usr/bin", environment["PATH"]])
         run = subprocess.run(["bash", "-c", command], cwd=work, env=environment,
                              capture_output=True, text=True, check=False)
         n_run += 1

@@ -323,7 +323,9 @@ TEST(Quality, RegionsAndCells)
               1e-14);
   for (const auto &cell : mesh.triangulation->active_cell_iterators())
     if (cell->is_locally_owned())
-      EXPECT_NEAR(per_cell[cell->active_cell_index()],
-                  cell->material_id() == 1 ? 1. : 0.8,
-                  1e-6);
+      {
+        EXPECT_NEAR(per_cell[cell->active_cell_index()],
+                    cell->material_id() == 1 ? 1. : 0.8,
+                    1e-6);
+      }
 }

@@ -136,10 +136,7 @@ namespace
   {
     return mesh_planar_geometry(geometry,
                                 PlanarMesher(),
-                                "planar",
-                                folder(),
-                                "test",
-                                MPI_COMM_WORLD,
+                                {"planar", folder(), "test", MPI_COMM_WORLD},
                                 report);
   }
 
@@ -306,8 +303,10 @@ TEST(Outline, AcceptsWhatIsClear)
       }
     ASSERT_EQ(outline.remarks.size(), remark.empty() ? 0u : 1u) << text;
     if (!remark.empty())
-      EXPECT_NE(outline.remarks[0].find(remark), std::string::npos)
-        << outline.remarks[0];
+      {
+        EXPECT_NE(outline.remarks[0].find(remark), std::string::npos)
+          << outline.remarks[0];
+      }
   };
   expect_same(plain + "0,0\n", "first point is repeated");
   expect_same(plain + "1e-8,0\n", "first point is repeated");
@@ -339,7 +338,9 @@ TEST(Outline, AcceptsWhatIsClear)
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t k = 0; k < 8; ++k)
       if (turned.points[i] == expected.points[k])
-        EXPECT_EQ(turned.labels[i], expected.labels[k]);
+        {
+          EXPECT_EQ(turned.labels[i], expected.labels[k]);
+        }
   // Area and centroid of a rectangle far from the origin
   const Points rectangle = {{101., 50.}, {105., 50.}, {105., 52.}, {101., 52.}};
   EXPECT_DOUBLE_EQ(signed_area(rectangle), 8.);

@@ -108,14 +108,12 @@ namespace
     geometry.point_names["margin"] = p[5];
     geometry.point_names["deep"]   = geometry.curves[1].nodes[n_rows / 2];
     PlanarMeshReport report;
-    return build_mesh(mesh_planar_geometry(geometry,
-                                           PlanarMesher(),
-                                           "sandwich",
-                                           folder(),
-                                           "test",
-                                           communicator,
-                                           report),
-                      communicator);
+    return build_mesh(
+      mesh_planar_geometry(geometry,
+                           PlanarMesher(),
+                           {"sandwich", folder(), "test", communicator},
+                           report),
+      communicator);
   }
 
   /** A configuration with its mesh, moved by a map. */

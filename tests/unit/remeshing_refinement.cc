@@ -311,7 +311,9 @@ remesh()
   const NodalVector x_c = c.configuration.positions();
   if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
     for (unsigned int i = 0; i < x_a.locally_owned_size(); ++i)
-      EXPECT_EQ(x_a.local_element(i), x_c.local_element(i));
+      {
+        EXPECT_EQ(x_a.local_element(i), x_c.local_element(i));
+      }
 }
 
 TEST(RefinementRemesher, DividedAndJoined)

@@ -84,10 +84,11 @@ namespace
     geometry.point_names["A"] = p[4];
     geometry.point_names["M"] = geometry.curves[5].nodes[3];
     PlanarMeshReport report;
-    return build_mesh(
-      mesh_planar_geometry(
-        geometry, PlanarMesher(), "row", ".", "test", MPI_COMM_WORLD, report),
-      MPI_COMM_WORLD);
+    return build_mesh(mesh_planar_geometry(geometry,
+                                           PlanarMesher(),
+                                           {"row", ".", "test", MPI_COMM_WORLD},
+                                           report),
+                      MPI_COMM_WORLD);
   }
 
   struct Body

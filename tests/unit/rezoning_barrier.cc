@@ -563,7 +563,9 @@ respects(const unsigned int degree)
       };
       EXPECT_GT(away(-1.), 0.003);
       if (right_moves)
-        EXPECT_GT(away(1.), 0.003);
+        {
+          EXPECT_GT(away(1.), 0.003);
+        }
       EXPECT_EQ(bench.distance(
                   x,
                   [](const Point<dim> &X) { return X; },

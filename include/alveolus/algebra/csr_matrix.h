@@ -50,8 +50,8 @@ namespace alveolus
     }
 
     std::vector<long>   row_begin; ///< of each row, and the end
-    std::vector<long>   columns;
-    std::vector<double> values;
+    std::vector<long>   columns;   ///< column of each entry, ascending in a row
+    std::vector<double> values;    ///< value of each entry
   };
 } // namespace alveolus
 

@@ -31,6 +31,9 @@ namespace alveolus
   class DistributedSystem : public LinearSystem, public AdaptiveTolerance
   {
   public:
+    /**
+     * How systems are solved: MUMPS, or CG or GMRES with algebraic multigrid.
+     */
     enum class Method
     {
       direct,
@@ -38,6 +41,11 @@ namespace alveolus
       gmres
     };
 
+    /**
+     * @param constraints of the matrix: hanging nodes
+     * @param tolerance of iterations, relative to the right-hand side [-]
+     * @param couplings dofs of different cells that get entries in common
+     */
     DistributedSystem(const dealii::DoFHandler<dim>           &dof_handler,
                       const dealii::AffineConstraints<double> &constraints,
                       const Method                             method,

@@ -18,8 +18,8 @@ namespace alveolus
    */
   struct Region
   {
-    std::string     name;
-    const Material *material = nullptr;
+    std::string     name;               ///< of the scene, in messages
+    const Material *material = nullptr; ///< of all its cells; lives elsewhere
     /** Mean dilatation (theory, section 2) instead of full integration. */
     bool mean_dilatation = true;
   };
@@ -51,6 +51,10 @@ namespace alveolus
       not_finite ///< stress not a finite number
     };
 
+    /**
+     * Both must outlive this object. It has work space inside: each thread
+     * needs its own.
+     */
     explicit CellKernel(const Configuration<dim> &configuration,
                         const StepGeometry<dim>  &geometry);
 

@@ -34,11 +34,17 @@ namespace alveolus
   class PrescribedIncrements
   {
   public:
+    /**
+     * Prescribe the increment of a dof [mm].
+     * @param where the condition, in the message
+     * @throws InputError if another value has been prescribed
+     */
     void
     prescribe(const dealii::types::global_dof_index dof,
               const double                          value,
               const std::string                    &where);
 
+    /** By dof: the increment [mm] and the condition it comes from. */
     const std::map<dealii::types::global_dof_index,
                    std::pair<double, std::string>> &
     all() const
@@ -58,10 +64,14 @@ namespace alveolus
    */
   struct AssemblyTarget
   {
-    NodalVector                             &residual;
-    LinearSystem                            *system = nullptr;
-    const dealii::AffineConstraints<double> *lift   = nullptr;
-    NodalVector                             *lifted = nullptr;
+    /** Internal minus external forces [N (per mm)]. */
+    NodalVector &residual;
+    /** Gets the matrix; null: forces only. */
+    LinearSystem *system = nullptr;
+    /** With the prescribed increments [mm]; null: none. */
+    const dealii::AffineConstraints<double> *lift = nullptr;
+    /** Gets minus matrix times these [N (per mm)]. */
+    NodalVector *lifted = nullptr;
 
     /** Add forces and (if there is a system) the matrix of some dofs. */
     void
@@ -99,7 +109,7 @@ namespace alveolus
     double by_body       = 0.; ///< of the body's forces along its motion
     double on_boundary   = 0.; ///< of the layer's forces along the boundary's
     double stored_before = 0.; ///< in the layer, on the area of x_n
-    double stored_after  = 0.;
+    double stored_after  = 0.; ///< the same at the end of the step
   };
 
   /** A named number for the history file. */

@@ -13,8 +13,11 @@ namespace alveolus
    */
   struct ContactForces
   {
-    ContactPatch                                          patch;
-    ContactPatch::Row                                     value{};
+    /** Coordinates that forces and matrix go with. */
+    ContactPatch patch;
+    /** Residual by coordinate [N/mm]. */
+    ContactPatch::Row value{};
+    /** Its derivatives [N/mm^2]. */
     std::array<ContactPatch::Row, ContactPatch::max_size> matrix{};
   };
 

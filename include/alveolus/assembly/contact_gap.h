@@ -13,6 +13,9 @@ namespace alveolus
    */
   struct ContactPatch
   {
+    /**
+     * Coordinates at most: the point and the nodes of three edges of degree 2.
+     */
     static constexpr unsigned int max_size = 16;
 
     using Row = std::array<double, max_size>; ///< derivatives by coordinates
@@ -22,6 +25,7 @@ namespace alveolus
                  const unsigned int    edge,
                  const bool            alone = false);
 
+    /** Number of coordinates. */
     unsigned int
     size() const
     {
@@ -30,7 +34,8 @@ namespace alveolus
 
     /** Of the outline; those of the edge are the first. */
     std::vector<unsigned int> nodes;
-    unsigned int              n_nodes_of_edge;
+    /** Of the first ones, how many are of the edge. */
+    unsigned int n_nodes_of_edge;
   };
 
   /**
@@ -51,21 +56,27 @@ namespace alveolus
                const ContactSurface    &surface,
                const ContactProjection &projection);
 
-    ContactPatch                     patch;
-    double                           gap = 0.; ///< [mm]
-    dealii::Tensor<1, 2>             normal;
-    std::array<double, 3>            shapes, shape_derivatives; ///< of the edge
-    ContactPatch::Row                d_gap{};
-    ContactPatch::Row                d_foot{}; ///< [1/mm]
+    /** Coordinates that all of this depends on. */
+    ContactPatch         patch;
+    double               gap = 0.; ///< [mm]
+    dealii::Tensor<1, 2> normal;   ///< unit one, out of the surface
+    /** Shape functions of the edge at the foot, and their derivatives by xi. */
+    std::array<double, 3> shapes;
+    std::array<double, 3> shape_derivatives; ///< see shapes
+    ContactPatch::Row     d_gap{};           ///< derivatives of the gap [-]
+    ContactPatch::Row     d_foot{};          ///< [1/mm]
+    /** Of the normal's components [1/mm]. */
     std::array<ContactPatch::Row, 2> d_normal{};
   };
 
   /** A function of the coordinates of a ContactPatch without neighbours. */
   struct ContactMeasure
   {
+    /** Derivatives by coordinate. */
     using Row = ContactPatch::Row;
 
-    double                                  value = 0.; ///< [mm]
+    double value = 0.; ///< [mm]
+    /** Of the value by coordinates [-]. */
     Row                                     gradient{};
     std::array<Row, ContactPatch::max_size> hessian{}; ///< [1/mm]
   };
@@ -79,14 +90,19 @@ namespace alveolus
    */
   struct ContactOffset
   {
+    /**
+     * @param x a point [mm]
+     * @param edge of the surface
+     * @param xi of the material point on it, in [0, 1]
+     */
     ContactOffset(const dealii::Point<2> &x,
                   const ContactSurface   &surface,
                   const unsigned int      edge,
                   const double            xi);
 
-    ContactPatch   patch;
-    ContactMeasure gap;  ///< along the outward normal
-    ContactMeasure slip; ///< along the tangent, from begin to end
+    ContactPatch   patch; ///< coordinates that both depend on
+    ContactMeasure gap;   ///< along the outward normal
+    ContactMeasure slip;  ///< along the tangent, from begin to end
   };
 } // namespace alveolus
 

@@ -50,6 +50,7 @@ namespace alveolus
     /** Into and from blocks of a checkpoint. @throws InputError */
     void
     save(const std::string &prefix, BlockFile &blocks) const;
+    /** The same back. @throws InputError if blocks are missing or damaged */
     void
     load(const std::string &prefix, const BlockFile &blocks);
 
@@ -78,12 +79,16 @@ namespace alveolus
       return indices[edge][end];
     }
 
+    /** Number of coefficients. */
     unsigned int
     size() const
     {
       return n;
     }
 
+    /**
+     * The function with these coefficients at the parameter @p xi of an edge.
+     */
     double
     value(const std::vector<double> &coefficients,
           const unsigned int         edge,
@@ -96,10 +101,10 @@ namespace alveolus
     /** A value at a place with the weight of a quadrature rule. */
     struct Sample
     {
-      unsigned int edge;
-      double       xi;
-      double       weight;
-      double       value;
+      unsigned int edge;   ///< of the outline
+      double       xi;     ///< parameter on the edge, in [0, 1]
+      double       weight; ///< of the quadrature [mm]
+      double       value;  ///< to be approximated, e.g. a pressure [MPa]
     };
 
     /** The nearest function, in the least squares sense. */
@@ -115,6 +120,7 @@ namespace alveolus
   class ContactArcLength
   {
   public:
+    /** @param positions of the outline's nodes [mm] */
     ContactArcLength(const ContactOutline                &outline,
                      const std::vector<dealii::Point<2>> &positions);
 
@@ -122,6 +128,7 @@ namespace alveolus
     double
     operator()(const unsigned int edge, const double xi) const;
 
+    /** Whose chains are measured; must outlive this object. */
     const ContactOutline     &outline;
     std::vector<unsigned int> chain; ///< of each edge
 

@@ -28,9 +28,11 @@ namespace alveolus
     /** Shape functions and their derivatives, in the order of the nodes. */
     static std::array<double, 3>
     shapes(const double xi, const unsigned int n_nodes);
+    /** Derivatives of the shape functions by xi, in the order of the nodes. */
     static std::array<double, 3>
     shape_derivatives(const double xi, const unsigned int n_nodes);
 
+    /** Point of the curve at xi [mm]. */
     dealii::Point<2>
     point(const double xi) const;
 
@@ -61,8 +63,9 @@ namespace alveolus
     double
     foot(const dealii::Point<2> &x) const;
 
-    const std::array<dealii::Point<2>, 3> nodes;
-    const unsigned int                    n_nodes;
+    const std::array<dealii::Point<2>, 3> nodes; ///< begin, end(, middle) [mm]
+    /** 2 (degree 1) or 3 (degree 2). */
+    const unsigned int n_nodes;
   };
 
   /**
@@ -85,9 +88,9 @@ namespace alveolus
     /** Edges first, first + 1, ... of one piece that follow each other. */
     struct Chain
     {
-      unsigned int first   = 0;
-      unsigned int n_edges = 0;
-      bool         closed  = false;
+      unsigned int first   = 0;     ///< its first edge
+      unsigned int n_edges = 0;     ///< number of its edges
+      bool         closed  = false; ///< whether the last edge meets the first
     };
 
     ContactOutline() = default;
@@ -106,10 +109,12 @@ namespace alveolus
     std::vector<dealii::Point<2>>
     get(const NodalVector &field) const;
 
+    /** An edge as a curve through its nodes at @p positions [mm]. */
     EdgeCurve
     curve(const unsigned int                   edge,
           const std::vector<dealii::Point<2>> &positions) const;
 
+    /** Number of lines of all pieces. */
     unsigned int
     n_edges() const
     {
@@ -121,9 +126,12 @@ namespace alveolus
      * body on the left. A closed chain begins at its node with the smallest
      * position (x, then y) in the initial mesh.
      */
-    std::vector<Edge>                                           edges;
-    std::vector<Chain>                                          chains;
-    std::vector<NodeId>                                         nodes;
+    std::vector<Edge> edges;
+    /** Pieces of connected edges. */
+    std::vector<Chain> chains;
+    /** Mesh nodes, by number of the outline. */
+    std::vector<NodeId> nodes;
+    /** Of x and y of each node. */
     std::vector<std::array<dealii::types::global_dof_index, 2>> dofs;
     unsigned int n_nodes_per_edge = 2; ///< degree + 1
 

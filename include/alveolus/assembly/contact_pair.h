@@ -55,12 +55,13 @@ namespace alveolus
   public:
     struct Parameters
     {
-      double       stiffness = 100.; ///< e [MPa/mm]
-      double       tolerance = 1e-3; ///< of penetration [mm]
-      double       reach     = 0.;   ///< of the search [mm]
-      double       kink      = 40.;  ///< sharp from this angle on [degrees]
-      unsigned int n_augmentations = 20;
-      bool         sticks          = false;
+      double       stiffness = 100.;     ///< e [MPa/mm]
+      double       tolerance = 1e-3;     ///< of penetration [mm]
+      double       reach     = 0.;       ///< of the search [mm]
+      double       kink      = 40.;      ///< sharp from this angle on [degrees]
+      unsigned int n_augmentations = 20; ///< largest number in a step
+      /** No slip under pressure; else none of friction. */
+      bool sticks = false;
     };
 
     /** What the last forces were. */
@@ -97,9 +98,14 @@ namespace alveolus
     void
     add_forces(const NodalVector &increment, const AssemblyTarget &target);
 
+    /**
+     * Tell the matrix which dofs of both bodies depend on each other in this
+     * step.
+     */
     void
     add_couplings(DofGroups &couplings) const;
 
+    /** Grows when add_couplings() has others than before. */
     unsigned int
     couplings_revision() const
     {
@@ -122,6 +128,7 @@ namespace alveolus
     /** Into and from blocks of a checkpoint. @throws InputError */
     void
     save(const std::string &prefix, BlockFile &blocks) const;
+    /** The same back. @throws InputError if blocks are missing or damaged */
     void
     load(const std::string &prefix, const BlockFile &blocks);
 
@@ -129,12 +136,14 @@ namespace alveolus
     Summary
     summary() const;
 
+    /** Augmentations of the current step so far. */
     unsigned int
     n_augmentations() const
     {
       return n_augmented;
     }
 
+    /** Distance within which master lines are searched for [mm]. */
     double
     reach() const
     {

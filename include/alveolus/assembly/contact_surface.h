@@ -13,6 +13,7 @@ namespace alveolus
     double       xi   = 0.;      ///< foot, outside [0, 1] at sharp kinks only
     double       gap  = 0.;      ///< along the outward normal; < 0: inside [mm]
 
+    /** Whether the point faces an edge. */
     bool
     found() const
     {
@@ -48,6 +49,7 @@ namespace alveolus
                   const std::vector<dealii::Point<2>> &positions,
                   const double                         angle);
 
+    /** An edge as a curve at the positions of this surface. */
     EdgeCurve
     curve(const unsigned int edge) const
     {
@@ -99,7 +101,9 @@ namespace alveolus
             const dealii::Tensor<1, 2>      &normal,
             const std::vector<unsigned int> &candidates) const;
 
-    const ContactOutline               &outline;
+    /** Of whose lines the surface consists; must outlive this object. */
+    const ContactOutline &outline;
+    /** Of the outline's nodes [mm]. */
     const std::vector<dealii::Point<2>> positions;
 
   private:

@@ -15,8 +15,8 @@ namespace alveolus
   /** What an assembly found, over all processes. */
   struct AssemblyResult
   {
-    bool        good = true;
-    std::string reason; ///< why not, with the place [mm]
+    bool        good = true; ///< whether forces are complete
+    std::string reason;      ///< why not, with the place [mm]
     /** Sum of |internal force| over all dofs of all cells [N (per mm)]. */
     double force_scale = 0.;
     double energy      = 0.; ///< stored energy [mJ (per mm)]
@@ -34,8 +34,14 @@ namespace alveolus
   class MechanicsAssembler
   {
   public:
+    /** All conditions of the scene, in its order. */
     using Conditions = std::vector<std::unique_ptr<Condition<dim>>>;
 
+    /**
+     * @param regions by index, as in the history
+     * @param conditions add their forces to those of the cells; all must
+     *        outlive this object
+     */
     MechanicsAssembler(State<dim>                &state,
                        const std::vector<Region> &regions,
                        Conditions                &conditions);
@@ -66,6 +72,7 @@ namespace alveolus
       return moved_weights[cell * geometry.n_points + point];
     }
 
+    /** Gradients and weights of the mesh x_n. */
     const StepGeometry<dim> &
     step_geometry() const
     {

@@ -64,13 +64,16 @@ namespace alveolus
     /** Force F and couple M at a time; what is not given is zero. */
     double
     force(const double t) const;
+    /** Couple M at a time [N mm (per mm)]. */
     double
     moment(const double t) const;
 
-    std::string on;
-    bool        follower = false;
-    std::string force_text, moment_text; ///< functions of t; empty: none
-    std::string direction = "normal";
+    std::string on;               ///< name of the boundary piece
+    bool        follower = false; ///< whether the load turns with the piece
+    std::string force_text;       ///< function of t [N (per mm)]; empty: none
+    std::string moment_text; ///< function of t [N mm (per mm)]; empty: none
+    std::string direction = "normal"; ///< of the force: "normal" or a vector
+    /** Of the couple in 3D, a vector. */
     std::string axis_text = "0, 0, 1";
     double      ratio     = 0.; ///< couple per force [mm]
 

@@ -19,6 +19,7 @@ namespace alveolus
   class StepGeometry
   {
   public:
+    /** Take the configuration's mesh. @throws RunError if it is inverted */
     explicit StepGeometry(const Configuration<dim> &configuration);
 
     /**
@@ -46,11 +47,12 @@ namespace alveolus
              static_cast<std::size_t>(slot[cell]) * n_points;
     }
 
+    /** Bytes of the arrays. */
     std::size_t
     memory_consumption() const;
 
-    const dealii::Quadrature<dim> quadrature;
-    const unsigned int            n_points;
+    const dealii::Quadrature<dim> quadrature; ///< Gauss points of the unit cell
+    const unsigned int            n_points;   ///< quadrature points of a cell
     const unsigned int            n_nodes; ///< scalar shape functions of a cell
 
   private:

@@ -26,9 +26,12 @@ namespace alveolus
   class BlockFile
   {
   public:
+    /** Version that is written; files of others are refused. */
     static constexpr std::uint32_t format_version = 1;
 
-    using Numbers  = std::vector<double>;
+    /** Blocks of numbers. */
+    using Numbers = std::vector<double>;
+    /** Blocks of whole numbers. */
     using Integers = std::vector<std::uint64_t>;
 
     /** @param source name of the file for messages */
@@ -42,11 +45,13 @@ namespace alveolus
     {
       blocks[name] = std::move(values);
     }
+    /** The same for whole numbers. */
     void
     put(const std::string &name, Integers values)
     {
       blocks[name] = std::move(values);
     }
+    /** The same for a text. */
     void
     put(const std::string &name, std::string text)
     {
@@ -58,12 +63,14 @@ namespace alveolus
     {
       put(name, Numbers{value});
     }
+    /** A block of one whole number. */
     void
     put_integer(const std::string &name, const std::uint64_t value)
     {
       put(name, Integers{value});
     }
 
+    /** Whether there is a block of this name. */
     bool
     has(const std::string &name) const
     {
@@ -74,13 +81,16 @@ namespace alveolus
      */
     const Numbers &
     numbers(const std::string &name) const;
+    /** The same for a block of whole numbers. */
     const Integers &
     integers(const std::string &name) const;
+    /** The same for a block of text. */
     const std::string &
     text(const std::string &name) const;
     /** The only number of a block. @throws InputError */
     double
     number(const std::string &name) const;
+    /** The only whole number of a block. @throws InputError */
     std::uint64_t
     integer(const std::string &name) const;
 
@@ -102,7 +112,7 @@ namespace alveolus
     static BlockFile
     parse(const std::string &bytes, const std::string &source);
 
-    std::string source;
+    std::string source; ///< name of the file, in messages
 
   private:
     using Block = std::variant<std::string, Numbers, Integers>;

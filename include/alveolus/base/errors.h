@@ -14,6 +14,11 @@ namespace alveolus
   class UserError : public std::runtime_error
   {
   public:
+    /**
+     * @param where file, line or parameter
+     * @param found what stands there or has happened
+     * @param advice what to do about it; may be empty
+     */
     UserError(const std::string &where,
               const std::string &found,
               const std::string &advice)
@@ -26,6 +31,7 @@ namespace alveolus
   class InputError : public UserError
   {
   public:
+    /** An InputError of these three parts, see UserError. */
     using UserError::UserError;
   };
 
@@ -33,6 +39,7 @@ namespace alveolus
   class RunError : public UserError
   {
   public:
+    /** A RunError of these three parts, see UserError. */
     using UserError::UserError;
   };
 } // namespace alveolus

@@ -18,6 +18,7 @@ namespace alveolus
    */
   struct HistoryField
   {
+    /** Which components a value has. */
     enum class Shape
     {
       scalar,
@@ -26,9 +27,10 @@ namespace alveolus
 
     std::string name; ///< also the name in the output, e.g. "density"
     std::string unit; ///< "" for none
-    Shape       shape = Shape::scalar;
+    Shape       shape = Shape::scalar; ///< of one value
     /** Bounds of a scalar, or of the eigenvalues of a tensor. */
-    double lower   = -std::numeric_limits<double>::infinity();
+    double lower = -std::numeric_limits<double>::infinity();
+    /** The same from above. */
     double upper   = std::numeric_limits<double>::infinity();
     bool traceless = false; ///< trace is zero, e.g. log of a unimodular tensor
   };
@@ -77,6 +79,10 @@ namespace alveolus
   {
   public:
     HistoryLayout() = default;
+    /**
+     * @param fields one after the other in the record
+     * @param dim of space: it says how many components a tensor needs
+     */
     HistoryLayout(const std::vector<HistoryField> &fields,
                   const unsigned int               dim)
       : fields(fields)
@@ -99,10 +105,10 @@ namespace alveolus
       return -1;
     }
 
-    std::vector<HistoryField> fields;
+    std::vector<HistoryField> fields;   ///< in the order of the record
     std::vector<unsigned int> offsets;  ///< of each field in the record
     unsigned int              size = 0; ///< values per quadrature point
-    unsigned int              dim  = 0;
+    unsigned int              dim  = 0; ///< of space
   };
 } // namespace alveolus
 

@@ -18,6 +18,7 @@ namespace alveolus
     /** More than these are not told. */
     static constexpr unsigned int most_told = 20;
 
+    /** Keep a message, or that there are more. */
     void
     add(const std::string &message)
     {
@@ -34,6 +35,7 @@ namespace alveolus
       return more;
     }
 
+    /** The same with the text of an InputError. */
     void
     add(const std::string &where,
         const std::string &found,
@@ -60,6 +62,7 @@ namespace alveolus
         }
     }
 
+    /** Whether there is no problem so far. */
     bool
     none() const
     {

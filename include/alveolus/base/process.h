@@ -11,7 +11,7 @@ namespace alveolus
   /** How another program ended and what it wrote. */
   struct ProcessResult
   {
-    bool        started = false;
+    bool        started = false;   ///< false: there is no such program
     std::string start_error;       ///< reason if it could not be started
     bool        timed_out = false; ///< it was killed at its time limit
     int         signal    = 0;     ///< signal that ended it, 0 if none
@@ -20,6 +20,7 @@ namespace alveolus
     std::string output;            ///< end of what it wrote to stdout
     std::string errors;            ///< end of what it wrote to stderr
 
+    /** Whether it was started and has ended by itself with exit code 0. */
     bool
     succeeded() const
     {

@@ -21,14 +21,19 @@ namespace alveolus
   class Registry
   {
   public:
+    /** Makes an object with default parameters. */
     using Factory = std::function<std::unique_ptr<Interface>()>;
 
     struct Entry
     {
-      std::string description;
-      Factory     factory;
+      std::string description; ///< equations and sources, for the manual
+      Factory     factory;     ///< makes an object
     };
 
+    /**
+     * Add a class, see ALVEOLUS_REGISTER; one of the same name is replaced.
+     * @return true
+     */
     static bool
     add(const std::string &name,
         const std::string &description,
@@ -64,6 +69,7 @@ namespace alveolus
       return result;
     }
 
+    /** All classes by name. */
     static std::map<std::string, Entry> &
     entries()
     {

@@ -12,8 +12,9 @@ namespace alveolus
   /** Eigenvalues in descending order, and orthonormal eigenvectors. */
   struct Spectral
   {
+    /** Eigenvalues, each with its vector. */
     std::array<double, 3>               values;
-    std::array<dealii::Tensor<1, 3>, 3> vectors;
+    std::array<dealii::Tensor<1, 3>, 3> vectors; ///< orthonormal
     /**
      * Which eigenvector is e_z, if the tensor has no xz and yz components
      * (plane strain); 3 for any other tensor. Turning the vectors does not
@@ -68,8 +69,8 @@ namespace alveolus
   /** f = V R with V symmetric positive definite and R a rotation. */
   struct Polar
   {
-    dealii::SymmetricTensor<2, 3> V;
-    dealii::Tensor<2, 3>          R;
+    dealii::SymmetricTensor<2, 3> V; ///< left stretch [-]
+    dealii::Tensor<2, 3>          R; ///< rotation
   };
 
   /** Left polar decomposition of @p f, det f > 0. */
@@ -118,12 +119,15 @@ namespace alveolus
    */
   using Mandel6 = std::array<double, 6>;
 
+  /** Components 11, 22, 33 and sqrt(2) times 12, 13, 23. */
   Mandel6
   to_mandel(const dealii::SymmetricTensor<2, 3> &tensor);
 
+  /** The tensor with these Mandel components. */
   dealii::SymmetricTensor<2, 3>
   from_mandel(const Mandel6 &components);
 
+  /** Scalar product of two tensors in Mandel components. */
   inline double
   dot(const Mandel6 &a, const Mandel6 &b)
   {
@@ -134,13 +138,15 @@ namespace alveolus
   /** A fourth-order tensor with both minor symmetries in the same basis. */
   struct Mandel66
   {
-    std::array<Mandel6, 6> rows{};
+    std::array<Mandel6, 6> rows{}; ///< one for each component of the result
 
+    /** Row i of the matrix. */
     Mandel6 &
     operator[](const unsigned int i)
     {
       return rows[i];
     }
+    /** Row i of the matrix. */
     const Mandel6 &
     operator[](const unsigned int i) const
     {
@@ -148,9 +154,11 @@ namespace alveolus
     }
   };
 
+  /** The second-order tensor A : b. */
   Mandel6
   operator*(const Mandel66 &A, const Mandel6 &b);
 
+  /** The fourth-order tensor A : B. */
   Mandel66
   operator*(const Mandel66 &A, const Mandel66 &B);
 
@@ -173,17 +181,24 @@ namespace alveolus
   class Cholesky6
   {
   public:
+    /** Decompose a symmetric matrix, of which the lower triangle is read. */
     explicit Cholesky6(const Mandel66 &matrix);
 
+    /**
+     * Whether the matrix is positive definite; the rest is meaningless
+     * otherwise.
+     */
     bool
     valid() const
     {
       return positive;
     }
 
+    /** Solve for one right-hand side. */
     Mandel6
     solve(const Mandel6 &right_hand_side) const;
 
+    /** Inverse of the matrix. */
     Mandel66
     inverse() const;
 

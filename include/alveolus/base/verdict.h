@@ -12,6 +12,7 @@ namespace alveolus
    */
   struct Verdict
   {
+    /** What is to follow, the most severe first. */
     enum class Kind
     {
       remesh_and_repeat,
@@ -20,10 +21,11 @@ namespace alveolus
       advance
     };
 
-    Kind        kind = Kind::advance;
+    Kind        kind = Kind::advance; ///< what is to follow
     std::string reason; ///< for the log, empty if the step is accepted
     std::string cause;  ///< of a repetition, in few words, to count it by
 
+    /** Whether the step has to be done again. */
     bool
     repeats() const
     {

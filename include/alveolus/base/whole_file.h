@@ -27,6 +27,7 @@ namespace alveolus
     WholeFile &
     operator=(const WholeFile &) = delete;
 
+    /** Where to write what the file is to hold. */
     std::ostream &
     stream()
     {

@@ -21,6 +21,7 @@ namespace alveolus
   class BoneMass
   {
   public:
+    /** Begin with the mass of a state. */
     explicit BoneMass(const State<dim> &state);
 
     /** True if some region of the state has a density. */
@@ -62,14 +63,15 @@ namespace alveolus
     /** Into and from blocks "bone mass/..." of a checkpoint (collective). */
     void
     save(const PortableFields<dim> &fields, BlockFile &blocks) const;
+    /** The same back. @throws InputError if a block does not fit */
     void
     load(const PortableFields<dim> &fields, const BlockFile &blocks);
 
     double mass             = 0.; ///< now
-    double initial          = 0.;
+    double initial          = 0.; ///< at the beginning of the run
     double by_remodelling   = 0.; ///< all cumulative
-    double by_volume_change = 0.;
-    double through_boundary = 0.;
+    double by_volume_change = 0.; ///< of pores closed or opened by strain
+    double through_boundary = 0.; ///< by rezoning along boundaries
     double by_remeshing     = 0.; ///< at outlines of new meshes
 
     /** What is not explained, relative to the initial mass. */

@@ -67,8 +67,10 @@ namespace alveolus
     std::vector<Recorded>
     totals() const;
 
+    /** Into blocks "energy/..." of a checkpoint. */
     void
     save(BlockFile &blocks) const;
+    /** The same back. @throws InputError */
     void
     load(const BlockFile &blocks);
 
@@ -95,6 +97,7 @@ namespace alveolus
       double worst       = 0.; ///< greatest |balance| of any step so far
     };
 
+    /** The sums up to now. */
     const Terms &
     terms() const
     {
@@ -125,8 +128,14 @@ namespace alveolus
     stored_in_layers(const Model<dim> &model) const;
     /** Of conditions in contact, as they stand in the residual. */
     NodalVector
-          contact_forces(Model<dim> &model, const NodalVector &increment) const;
-    Terms sum;
+    contact_forces(Model<dim> &model, const NodalVector &increment) const;
+
+    /** Take anew what is stored, since mesh and history are others.
+     * @return by how much it has changed [mJ (per mm)] */
+    double
+    take_stock(const Model<dim> &model);
+
+    Terms  sum;
     double resultants = 0.;
     double in_cells   = 0.; ///< stored there at the end of the last step
     bool   begun      = false;

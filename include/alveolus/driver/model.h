@@ -67,22 +67,34 @@ namespace alveolus
     std::vector<double>
     measures() const;
 
-    std::shared_ptr<Scene<dim>>                  scene;
-    Mesh<dim>                                    mesh;
-    std::vector<Region>                          regions;
-    std::vector<RegionRemodelling>               remodelling;
-    std::unique_ptr<State<dim>>                  state;
+    /** What the user asked for; shared by all models of a run. */
+    std::shared_ptr<Scene<dim>> scene;
+    /** The mesh and its names. */
+    Mesh<dim> mesh;
+    /** By index of the history. */
+    std::vector<Region> regions;
+    /** By region; null pointers where there is none. */
+    std::vector<RegionRemodelling> remodelling;
+    /** All that a step changes. */
+    std::unique_ptr<State<dim>> state;
+    /** Loads, supports, contacts, layers. */
     typename MechanicsAssembler<dim>::Conditions conditions;
-    std::unique_ptr<Equilibrium<dim>>            equilibrium;
-    std::unique_ptr<StaggeredStep<dim>>          staggered_step;
+    /** Solves an increment. */
+    std::unique_ptr<Equilibrium<dim>> equilibrium;
+    /** Equilibrium and remodelling. */
+    std::unique_ptr<StaggeredStep<dim>> staggered_step;
 
     // Present only where the scene rezones:
-    std::unique_ptr<Rezoner<dim>>       rezoner;
+    std::unique_ptr<Rezoner<dim>> rezoner; ///< moves nodes
+    /** History, on sub-cells. */
     std::unique_ptr<SweptTransfer<dim>> swept_transfer;
+    /** Displacement of the nodes. */
     std::unique_ptr<NodalTransfer<dim>> nodal_transfer;
-    std::unique_ptr<FaceTransfer<dim>>  face_transfer;
+    /** History of layers on boundaries. */
+    std::unique_ptr<FaceTransfer<dim>> face_transfer;
 
     // Present only where history is transferred and some region asks for it:
+    /** Where the material began. */
     std::unique_ptr<ReferenceMap<dim>> reference_map;
 
   private:

@@ -20,7 +20,7 @@ namespace alveolus
 
     bool print_parameters = false; ///< and nothing else
     bool validate         = false; ///< make and check everything, solve nothing
-    bool quiet            = false;
+    bool quiet            = false; ///< nothing on the screen
     bool accept           = false; ///< changed settings when resuming
     bool allow_scripts    = false; ///< a mesh file may be a script of gmsh
   };

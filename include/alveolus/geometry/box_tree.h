@@ -14,14 +14,16 @@ namespace alveolus
   class BoxTree
   {
   public:
+    /** Extent of an object, by its opposite corners [mm]. */
     using Box = dealii::BoundingBox<dim>;
 
     /** A packed R-tree (Boost.Geometry) of @p boxes. */
     explicit BoxTree(const std::vector<Box> &boxes);
     ~BoxTree();
+    /** Takes the tree; the other is empty. */
     BoxTree(BoxTree &&) noexcept;
     BoxTree &
-    operator=(BoxTree &&) noexcept;
+    operator=(BoxTree &&) noexcept; ///< Takes the tree; the other is empty.
 
     /** Numbers of the boxes that meet @p box or touch it, ascending. */
     void

@@ -17,8 +17,10 @@ namespace alveolus
   template <int dim>
   struct ConvexPiece
   {
+    /** In order around (2D), or of a tetrahedron [mm]. */
     std::array<dealii::Point<dim>, 4> corners;
-    unsigned int                      n_corners = 4;
+    /** Of these, how many count. */
+    unsigned int n_corners = 4;
   };
 
   /** Volume (2D: area) and first moment of a body. */

@@ -82,8 +82,9 @@ namespace alveolus
   /** A stretch of an outline with one name, between two arc lengths [mm]. */
   struct Stretch
   {
-    double      begin = 0., end = 0.;
-    std::string name;
+    double      begin = 0.; ///< arc length [mm]
+    double      end   = 0.; ///< arc length [mm]
+    std::string name;       ///< label of its points, or empty
   };
 
   /**
@@ -99,12 +100,14 @@ namespace alveolus
     /** @param corner_angle in radians */
     SmoothOutline(const Outline &outline, const double corner_angle);
 
+    /** Length of the whole outline [mm]. */
     double
     length() const
     {
       return start.back();
     }
 
+    /** Point at the arc length @p s from the begin [mm]. */
     dealii::Point<2>
     point(const double s) const;
 

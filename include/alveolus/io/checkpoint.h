@@ -22,10 +22,13 @@ namespace alveolus
   public:
     struct Parameters
     {
-      bool         write         = true;
-      double       wall_interval = 60.;
-      unsigned int step_interval = 0;
+      bool         write         = true; ///< whether there are any
+      double       wall_interval = 60.;  ///< of wall time between two [s]
+      unsigned int step_interval = 0;    ///< steps between two; 0: by time only
 
+      /**
+       * Add the parameters, bound to the members, to the current subsection.
+       */
       void
       declare(dealii::ParameterHandler &prm);
     };

@@ -17,6 +17,7 @@ namespace alveolus
   class CornerQuality : public Recorder<dim>
   {
   public:
+    /** Adds `On`, named points, and `Region`, whose elements count. */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
     void

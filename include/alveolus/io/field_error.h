@@ -27,6 +27,10 @@ namespace alveolus
   class FieldError : public Recorder<dim>
   {
   public:
+    /**
+     * Adds `On`, regions, `Field`, a history field, and `Function`, what it
+     * should be.
+     */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
     void

@@ -37,6 +37,7 @@ namespace alveolus
     /** Into and from blocks "fields/...": what was written so far. */
     void
     save(BlockFile &blocks) const;
+    /** The same back. @throws InputError */
     void
     load(const BlockFile &blocks);
 

@@ -17,6 +17,7 @@ namespace alveolus
   class HistoryFile
   {
   public:
+    /** Columns by name with unit, e.g. "force x [N]", and their values. */
     using Row = std::vector<std::pair<std::string, double>>;
 
     /** @throws InputError if the file cannot be written */

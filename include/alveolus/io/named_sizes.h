@@ -14,7 +14,7 @@ namespace alveolus
   /** What a name of a mesh stands for. */
   struct NamedSize
   {
-    std::string name;
+    std::string name; ///< as it stands in the mesh
     std::string kind; ///< region, boundary, curve (2D: inside) or point
     /** Cells, faces or, of a curve, edges; 1 for a point. */
     unsigned int n_members = 0;
@@ -35,11 +35,13 @@ namespace alveolus
   template <int dim>
   struct MeshPiece
   {
-    std::array<dealii::Point<dim>, 4> corners;
-    dealii::types::material_id        material = 0;
-    dealii::types::boundary_id        boundary =
+    std::array<dealii::Point<dim>, 4> corners;      ///< positions [mm]
+    dealii::types::material_id        material = 0; ///< of the cell
+    /** Of the face, in 3D. */
+    dealii::types::boundary_id boundary =
       dealii::numbers::internal_face_boundary_id;
 
+    /** For Boost.Serialization. */
     template <class Archive>
     void
     serialize(Archive &archive, const unsigned int)
@@ -53,12 +55,16 @@ namespace alveolus
   /** A line with ids in 2D. */
   struct NamedLine
   {
-    dealii::Point<2>           a, b;
+    dealii::Point<2> a; ///< one end [mm]
+    dealii::Point<2> b; ///< the other end [mm]
+    /** By which curves know it. */
     dealii::types::manifold_id manifold = dealii::numbers::flat_manifold_id;
+    /** By which boundaries know it. */
     dealii::types::boundary_id boundary =
       dealii::numbers::internal_face_boundary_id;
     double weight = 1.; ///< 1/2 if seen from both sides
 
+    /** For Boost.Serialization. */
     template <class Archive>
     void
     serialize(Archive &archive, const unsigned int)
@@ -71,8 +77,10 @@ namespace alveolus
   template <int dim>
   struct GatheredPieces
   {
-    std::vector<MeshPiece<dim>> pieces;
-    std::vector<NamedLine>      lines;
+    std::vector<MeshPiece<dim>> pieces; ///< cells (2D), boundary faces (3D)
+    /** With ids of curves or boundaries; 2D only. */
+    std::vector<NamedLine> lines;
+    /** Number of cells and their volume [mm^dim] by material id. */
     std::map<dealii::types::material_id, std::pair<unsigned int, double>> cells;
   };
 

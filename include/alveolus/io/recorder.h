@@ -23,6 +23,7 @@ namespace alveolus
   public:
     virtual ~Recorder() = default;
 
+    /** Add the parameters, bound to members, to the current subsection. */
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
@@ -48,6 +49,7 @@ namespace alveolus
   class PointDisplacement : public Recorder<dim>
   {
   public:
+    /** Adds `On`, a named point, and `Components`. */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
     void
@@ -68,6 +70,7 @@ namespace alveolus
   class Resultant : public Recorder<dim>
   {
   public:
+    /** Adds `On`, boundaries, curves or points, and `Components`. */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
     void
@@ -92,6 +95,7 @@ namespace alveolus
   class FieldExtremes : public Recorder<dim>
   {
   public:
+    /** Adds `Field`, its name, `On`, regions, and `Count up to`. */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
     void

@@ -22,6 +22,7 @@ namespace alveolus
   class RigidMotion : public Recorder<dim>
   {
   public:
+    /** Adds `On`, regions of the mesh that move together. */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
     void

@@ -15,10 +15,13 @@ namespace alveolus
   class RimDepth : public Recorder<2>
   {
   public:
+    /** Adds `On`, a boundary piece that is not closed. */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
+    /** Find the piece and its two ends. @throws InputError */
     void
     attach(const State<2> &state, const std::string &where) override;
+    /** Depths now [mm]. */
     std::vector<Recorded>
     record(const State<2> &state, const NodalVector &reactions) const override;
 

@@ -16,6 +16,7 @@ namespace alveolus
   class StrainExtremes : public Recorder<dim>
   {
   public:
+    /** Adds `On`, regions of the mesh. */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
     void

@@ -55,7 +55,7 @@ namespace alveolus
     double
     ellipticity(const double *history) const;
 
-    unsigned int dim = 0;
+    unsigned int dim = 0; ///< of space: 2 is plane strain
   };
 
   /** Von Mises equivalent sqrt(3/2) |dev tau| of a stress. */
@@ -69,10 +69,15 @@ namespace alveolus
   struct LameConstants
   {
     LameConstants() = default;
+    /**
+     * From Young's modulus [MPa] and Poisson's ratio [-]. @throws InputError
+     * naming @p where unless E > 0 and -1 < nu < 1/2
+     */
     LameConstants(const double       young,
                   const double       poisson,
                   const std::string &where);
-    double lambda = 0., mu = 0.;
+    double lambda = 0.; ///< [MPa]
+    double mu     = 0.; ///< shear modulus [MPa]
   };
 } // namespace alveolus
 

@@ -77,12 +77,13 @@ namespace alveolus
    */
   struct YieldStress
   {
-    const HardeningLaw &law;
+    const HardeningLaw &law;         ///< for intact bone
     double              initial;     ///< sigma_Y [MPa]
     double              alpha;       ///< at the start [-]
     double              scale  = 1.; ///< of the yield stress [-]
     double              growth = 1.; ///< of alpha per increment [-]
 
+    /** Yield stress at the plastic strain @p d [MPa]. */
     double
     value(const double d) const
     {

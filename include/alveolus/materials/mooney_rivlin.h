@@ -26,9 +26,9 @@ namespace alveolus
     principal_response(const std::array<double, 3> &h) const override;
 
   protected:
-    double c1   = 1.;
-    double c2   = 0.25;
-    double bulk = 1000.;
+    double c1   = 1.;    ///< first constant [MPa]
+    double c2   = 0.25;  ///< second constant [MPa]
+    double bulk = 1000.; ///< bulk modulus [MPa]
   };
 } // namespace alveolus
 

@@ -54,10 +54,10 @@ namespace alveolus
     std::string
     origin(const std::string &where) const;
 
-    std::string list;
-    std::string file;
-    std::string tension_branch;
-    double      smoothing_width;
+    std::string list;            ///< points in the parameter file, or empty
+    std::string file;            ///< name of a file of points, or empty
+    std::string tension_branch;  ///< "continued" or "as printed"
+    double      smoothing_width; ///< of jumps of the modulus, in strain [-]
   };
 } // namespace alveolus
 

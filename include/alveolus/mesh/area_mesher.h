@@ -19,7 +19,7 @@ namespace alveolus
   /** The mesher and how good its meshes have to be. */
   struct PlanarMesher
   {
-    GmshSettings gmsh;
+    GmshSettings gmsh; ///< how gmsh is run
     /** No further attempt is made at this smallest scaled Jacobian. */
     double good_quality = 0.6;
     /** Options in the order in which they are tried. */
@@ -39,11 +39,11 @@ namespace alveolus
    */
   struct AreaMesh
   {
-    std::vector<dealii::Point<2>> vertices; ///< [mm]
-    std::vector<Quad>             quads;
+    std::vector<dealii::Point<2>> vertices;      ///< [mm]
+    std::vector<Quad>             quads;         ///< vertices by number
     double                        quality = -1.; ///< smallest scaled Jacobian
     std::string                   remark;        ///< how it was made
-    unsigned int                  n_mesher_runs = 0;
+    unsigned int                  n_mesher_runs = 0; ///< attempts it took
   };
 
   /**
@@ -79,7 +79,6 @@ namespace alveolus
    * @param area its sizes and its name
    * @param loops nodes of the boundary, each loop an even number, the outer one
    *        first
-   * @param name of the files without ending
    * @throws InputError if gmsh cannot be started, RunError if no attempt gives
    *         a valid mesh
    */
@@ -88,10 +87,7 @@ namespace alveolus
     const PlanarArea                                 &area,
     const std::vector<std::vector<dealii::Point<2>>> &loops,
     const PlanarMesher                               &mesher,
-    const std::string                                &name,
-    const std::string                                &output_directory,
-    const std::string                                &where,
-    const MPI_Comm                                   &communicator);
+    const MeshingJob                                 &job);
 } // namespace alveolus
 
 #endif

@@ -17,8 +17,11 @@ namespace alveolus
   class BlockMesh
   {
   public:
-    using Place     = dealii::Point<3>;
+    /** A point, in the unit cube or in the body [mm]. */
+    using Place = dealii::Point<3>;
+    /** Cells in the three directions. */
     using Divisions = std::array<unsigned int, 3>;
+    /** Chooses points of the body [mm]. */
     using Condition = std::function<bool(const Place &)>;
 
     /**

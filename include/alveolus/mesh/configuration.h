@@ -51,24 +51,29 @@ namespace alveolus
     void
     move(const NodalVector &displacement_increment);
 
+    /** From the unit cell to the current positions. */
     const dealii::Mapping<dim> &
     mapping() const
     {
       return *eulerian_mapping;
     }
 
+    /** Of the processes that share the mesh. */
     MPI_Comm
     communicator() const
     {
       return mesh.triangulation->get_communicator();
     }
 
-    const Mesh<dim>        &mesh;
-    const unsigned int      degree;
-    dealii::FESystem<dim>   fe;
+    const Mesh<dim> &mesh; ///< initial mesh and its names
+    /** Of shape functions and of the mapping: 1 or 2. */
+    const unsigned int    degree;
+    dealii::FESystem<dim> fe; ///< dim components of FE_Q
+    /** Numbers of the components of positions. */
     dealii::DoFHandler<dim> dof_handler;
-    dealii::IndexSet        locally_owned;
-    dealii::IndexSet        locally_relevant;
+    dealii::IndexSet        locally_owned; ///< dofs of this process
+    /** These and the ones of ghost cells. */
+    dealii::IndexSet locally_relevant;
 
     /** d [mm]; ghosted. Change it through set_positions() or move(). */
     const NodalVector &

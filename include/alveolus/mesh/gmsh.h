@@ -19,6 +19,22 @@ namespace alveolus
     declare_parameters(dealii::ParameterHandler &prm);
   };
 
+  /** Who asks for a mesh, and where the files made on the way go: handed on
+   * from mesh sources and remeshers down to the mesher. */
+  struct MeshingJob
+  {
+    /** Of the mesh: in messages, and of its files without ending. */
+    std::string name;
+    std::string output_directory; ///< existing folder for the files
+    std::string where;        ///< subsection of the parameters, for messages
+    MPI_Comm    communicator; ///< of all processes that want the mesh
+
+    /** The job of a part of this mesh, or of a further attempt at it: the same
+     * with the name `NAME-suffix`, blanks replaced by dashes. */
+    MeshingJob
+    part(const std::string &suffix) const;
+  };
+
   /**
    * The program that is started as gmsh: what the environment variable
    * `ALVEOLUS_MESHER` names, else "gmsh"; searched for in PATH if it holds no
@@ -33,10 +49,9 @@ namespace alveolus
    * @p geometry (collective; process 0 runs it, out of process and without a
    * shell, so that its crash is an error message). The script must come from
    * this program, never from a user: gmsh's language can start programs.
-   * Script and mesh are written as @p name.geo and @p name.msh into
-   * @p output_directory. Options of the user's own gmsh are not read, and one
-   * thread is used, so that the same input gives the same mesh.
-   * @param where subsection of the parameters, for messages
+   * Script and mesh are written as `NAME.geo` and `NAME.msh` into the job's
+   * folder. Options of the user's own gmsh are not read, and one thread is
+   * used, so that the same input gives the same mesh.
    * @return the mesh file's text (format 4.1), on every process
    * @throws InputError if gmsh cannot be started, RunError if it crashes,
    * hangs, reports an error or writes no mesh
@@ -44,11 +59,8 @@ namespace alveolus
   std::string
   run_gmsh(const std::string  &geometry,
            const unsigned int  dim,
-           const std::string  &name,
-           const std::string  &output_directory,
            const GmshSettings &settings,
-           const std::string  &where,
-           const MPI_Comm     &communicator);
+           const MeshingJob   &job);
 } // namespace alveolus
 
 #endif

@@ -41,10 +41,13 @@ namespace alveolus
      */
     const dealii::Point<dim> &
     point(const std::string &name, const std::string &where) const;
+    /** Manifold ids of a curve. @throws InputError */
     const std::set<dealii::types::manifold_id> &
     curve(const std::string &name, const std::string &where) const;
+    /** Boundary ids of a piece of boundary. @throws InputError */
     const std::set<dealii::types::boundary_id> &
     boundary(const std::string &name, const std::string &where) const;
+    /** Material ids of a region. @throws InputError */
     const std::set<dealii::types::material_id> &
     region(const std::string &name, const std::string &where) const;
 
@@ -77,9 +80,9 @@ namespace alveolus
   struct Mesh
   {
     std::unique_ptr<dealii::parallel::distributed::Triangulation<dim>>
-                   triangulation;
-    NamedSets<dim> names;
-    std::string    description; ///< one line for the log
+                   triangulation; ///< cells and ids, at the initial positions
+    NamedSets<dim> names;         ///< names of ids and points
+    std::string    description;   ///< one line for the log
   };
 } // namespace alveolus
 

@@ -19,6 +19,7 @@ namespace alveolus
   template <int structdim>
   struct DescribedElement
   {
+    /** In deal.II's order. */
     std::array<unsigned int, (1 << structdim)> vertices{};
     /** Id of the piece it belongs to, at least 1; a name stands for pieces. */
     unsigned int tag    = 0;
@@ -37,14 +38,14 @@ namespace alveolus
     std::string                        source;   ///< file name, for messages
     std::vector<dealii::Point<dim>>    vertices; ///< [mm]
     std::vector<std::size_t>           vertex_numbers; ///< in the file
-    std::vector<DescribedElement<dim>> cells;
+    std::vector<DescribedElement<dim>> cells; ///< with the tags of regions
     std::vector<DescribedElement<1>>   lines; ///< of named curves
     std::vector<DescribedElement<2>>   quads; ///< of named surfaces; 3D only
 
-    std::map<std::string, unsigned int>           points; ///< vertex index
-    std::map<std::string, std::set<unsigned int>> curves;
+    std::map<std::string, unsigned int>           points;   ///< vertex index
+    std::map<std::string, std::set<unsigned int>> curves;   ///< tags of lines
     std::map<std::string, std::set<unsigned int>> surfaces; ///< 3D only
-    std::map<std::string, std::set<unsigned int>> regions;
+    std::map<std::string, std::set<unsigned int>> regions;  ///< tags of cells
 
     /** "file" or "file, line 12" for the messages. */
     std::string

@@ -60,6 +60,7 @@ namespace alveolus
     }
 
   protected:
+    /** Whether gmsh scripts of the user may run (`--allow-scripts`). */
     bool
     may_run_scripts() const
     {

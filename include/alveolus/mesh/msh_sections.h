@@ -16,10 +16,10 @@ namespace alveolus
   /** What gmsh's format says of an element type. */
   struct MshElementType
   {
-    unsigned int dimension;
-    unsigned int n_nodes;
-    const char  *name;  ///< singular
-    const char  *names; ///< plural
+    unsigned int dimension; ///< of space: 0 for a point
+    unsigned int n_nodes;   ///< of one element
+    const char  *name;      ///< singular
+    const char  *names;     ///< plural
   };
 
   /** Gmsh's element types by number, up to second order. */
@@ -30,14 +30,15 @@ namespace alveolus
   struct MshNode
   {
     dealii::Point<3> position; ///< [mm]
-    std::size_t      line;
+    std::size_t      line;     ///< in the file
   };
 
   /** An element as it stands in the file. */
   struct MshElement
   {
-    int                      type;
-    std::size_t              number, line;
+    int                      type;   ///< gmsh's number of the kind
+    std::size_t              number; ///< in the file
+    std::size_t              line;   ///< of the file where it stands
     int                      entity; ///< number of the elementary entity
     std::set<int>            groups; ///< numbers of the physical groups
     std::vector<std::size_t> nodes;  ///< numbers, all of them known
@@ -50,7 +51,7 @@ namespace alveolus
     std::map<std::pair<unsigned int, int>, std::string> group_names;
     std::unordered_map<std::size_t, MshNode>            nodes; ///< by number
     std::vector<std::size_t> node_order; ///< numbers in the file's order
-    std::vector<MshElement>  elements;
+    std::vector<MshElement>  elements;   ///< in the file's order
   };
 
   /**

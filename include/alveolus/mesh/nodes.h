@@ -22,8 +22,8 @@ namespace alveolus
    */
   struct NodeCurve
   {
-    std::vector<NodeId> nodes;
-    bool                closed = false;
+    std::vector<NodeId> nodes;          ///< along the curve
+    bool                closed = false; ///< the last one is next to the first
   };
 
   /**
@@ -36,6 +36,7 @@ namespace alveolus
   class Nodes
   {
   public:
+    /** @param configuration must outlive this object (collective) */
     explicit Nodes(const Configuration<dim> &configuration);
 
     /** True where the node is owned by this process. */
@@ -111,7 +112,7 @@ namespace alveolus
     std::vector<NodeId>
     region(const std::string &name, const std::string &where) const;
 
-    const Configuration<dim> &configuration;
+    const Configuration<dim> &configuration; ///< whose nodes these are
 
   private:
     /** Relevant nodes among those marked by their owners, ascending. */

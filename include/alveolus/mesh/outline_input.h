@@ -21,6 +21,7 @@ namespace alveolus
   class OutlineInput
   {
   public:
+    /** Add the parameters, bound to members, to the current subsection. */
     void
     declare_parameters(dealii::ParameterHandler &prm);
 
@@ -34,6 +35,7 @@ namespace alveolus
     tooth(const std::string &directory,
           const std::string &section,
           const MPI_Comm    &communicator) const;
+    /** The same for the bone. @throws InputError */
     Outline
     bone(const std::string &directory,
          const std::string &section,

@@ -19,9 +19,10 @@ namespace alveolus
   /** A curve of a plane geometry, given by the mesh nodes it will have. */
   struct PlanarCurve
   {
-    /** Indices of its end points in PlanarGeometry::points; a closed curve
+    /** Index of its first point in PlanarGeometry::points; a closed curve
      * begins and ends at the same one. */
-    unsigned int begin = 0, end = 0;
+    unsigned int begin = 0;
+    unsigned int end   = 0; ///< index of its last point
     /** All nodes of the final mesh on the curve [mm], both ends included and
      * equal to the end points; each segment becomes an edge of the cells on its
      * sides. */
@@ -29,6 +30,7 @@ namespace alveolus
     /** Id of the piece, 0 for a curve without a name. */
     unsigned int tag = 0;
 
+    /** Number of edges. */
     unsigned int
     n_segments() const
     {
@@ -40,8 +42,8 @@ namespace alveolus
    */
   struct LoopPart
   {
-    unsigned int curve    = 0;
-    bool         reversed = false;
+    unsigned int curve    = 0;     ///< index among the curves
+    bool         reversed = false; ///< run through from end to begin
   };
 
   /** A plane area to be filled with quads. */
@@ -60,7 +62,8 @@ namespace alveolus
      * meshed by transfinite interpolation. corners[k] is the position in
      * loops[0] of the curve with which side k begins; corners[0] = 0.
      */
-    bool                        structured = false;
+    bool structured = false;
+    /** Where the four sides begin in the loop. */
     std::array<unsigned int, 4> corners{{0, 1, 2, 3}};
     /** Layers of the caps at sides 3 and 1, see Strip; 0 is none. */
     std::array<unsigned int, 2> caps{{0, 0}};
@@ -76,8 +79,8 @@ namespace alveolus
   struct PlanarGeometry
   {
     std::vector<dealii::Point<2>> points; ///< [mm]
-    std::vector<PlanarCurve>      curves;
-    std::vector<PlanarArea>       areas;
+    std::vector<PlanarCurve>      curves; ///< each once, also between areas
+    std::vector<PlanarArea>       areas;  ///< each filled by itself
 
     std::map<std::string, dealii::Point<2>>       point_names;  ///< at nodes
     std::map<std::string, std::set<unsigned int>> curve_names;  ///< to tags

@@ -12,8 +12,9 @@ namespace alveolus
   {
     /** One line for each area: cells, quality, options taken. */
     std::vector<std::string> areas;
-    double                   smallest_scaled_jacobian = 0.;
-    unsigned int             n_mesher_runs            = 0;
+    double                   smallest_scaled_jacobian = 0.; ///< of all corners
+    /** Attempts of gmsh, all together. */
+    unsigned int n_mesher_runs = 0;
 
     /** All areas in one line. */
     std::string
@@ -27,9 +28,6 @@ namespace alveolus
    * mesh_structured_area(), others by mesh_unstructured_area(), each with the
    * options of the mesher's list in turn until its smallest scaled Jacobian is
    * good (or the best of them): the result is deterministic.
-   * @param name   of the mesh, for messages and the files of the mesher in
-   *               @p output_directory
-   * @param where  subsection of the parameters, for messages
    * @return a description that has passed check_description()
    * @throws InputError if gmsh cannot be started, RunError if no attempt gives
    * a valid mesh of an area, or a loop of an unstructured area has an odd
@@ -38,10 +36,7 @@ namespace alveolus
   MeshDescription<2>
   mesh_planar_geometry(const PlanarGeometry &geometry,
                        const PlanarMesher   &mesher,
-                       const std::string    &name,
-                       const std::string    &output_directory,
-                       const std::string    &where,
-                       const MPI_Comm       &communicator,
+                       const MeshingJob     &job,
                        PlanarMeshReport     &report);
 } // namespace alveolus
 

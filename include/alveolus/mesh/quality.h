@@ -15,13 +15,14 @@ namespace alveolus
   template <int dim>
   struct QualitySummary
   {
-    double             smallest_scaled_jacobian = 0.;
+    double             smallest_scaled_jacobian = 0.; ///< of all corners
     dealii::Point<dim> where; ///< centre of that cell [mm]
-    unsigned int       n_inverted_corners = 0;
+    /** Corners with scaled Jacobian <= 0. */
+    unsigned int n_inverted_corners = 0;
     /** Smallest det(dx/dxi) at the quadrature points, relative to cell means.
      */
     double             smallest_point_jacobian = 0.;
-    dealii::Point<dim> where_point;
+    dealii::Point<dim> where_point; ///< of that [mm]
   };
 
   /**

@@ -16,11 +16,11 @@ namespace alveolus
     std::array<unsigned int, 2> caps{{0, 0}};
     unsigned int n_along      = 250;  ///< elements along the root, even
     double       tooth_size   = 0.32; ///< largest edge
-    double       bone_size    = 0.9;
+    double       bone_size    = 0.9;  ///< largest edge [mm]
     double       tooth_growth = 0.19; ///< of the edge with the distance [-]
-    double       bone_growth  = 0.25;
-    double       corner_angle = 0.7; ///< [rad]
-    double       least_bone   = 0.3; ///< thinnest plate that is accepted
+    double       bone_growth  = 0.25; ///< the same in bone [-]
+    double       corner_angle = 0.7;  ///< [rad]
+    double       least_bone   = 0.3;  ///< thinnest plate that is accepted
 
     // Pieces of outlines without labels
     double crown_height = 2.; ///< crown pieces begin so far above margins

@@ -34,8 +34,12 @@ namespace alveolus
   {
     /** Nodes of the sides with their ends; bottom and top in one direction,
      * left and right from bottom to top. */
-    std::vector<dealii::Point<2>> bottom, right, top, left;
-    unsigned int                  n_across = 1;
+    std::vector<dealii::Point<2>> bottom;
+    std::vector<dealii::Point<2>> right; ///< see bottom [mm]
+    std::vector<dealii::Point<2>> top;   ///< see bottom [mm]
+    std::vector<dealii::Point<2>> left;  ///< see bottom [mm]
+    /** Quads between bottom and top. */
+    unsigned int n_across = 1;
     /** Layers of the cap at the left and the right end; 0 is no cap. */
     std::array<unsigned int, 2> caps{{0, 0}};
   };
@@ -46,10 +50,14 @@ namespace alveolus
     /** First those of the border: bottom, top, then what is left of the left
      * and the right side; then the inner ones. */
     std::vector<dealii::Point<2>> vertices;
-    std::vector<Quad>             quads;
-    unsigned int                  n_border = 0;
+    std::vector<Quad>             quads; ///< vertices by number
+    /** Vertices on the border: the first ones. */
+    unsigned int n_border = 0;
     /** Indices of the vertices on the sides, as the sides were given. */
-    std::vector<unsigned int> bottom, right, top, left;
+    std::vector<unsigned int> bottom;
+    std::vector<unsigned int> right; ///< see bottom
+    std::vector<unsigned int> top;   ///< see bottom
+    std::vector<unsigned int> left;  ///< see bottom
   };
 
   /**

@@ -12,15 +12,15 @@ namespace alveolus
   {
     /** Nodes in order, both ends included; a closed piece repeats its first. */
     std::vector<unsigned int> nodes;
-    LineIds                   ids;
+    LineIds                   ids;            ///< of all its lines
     bool                      is_cut = false; ///< a line cut through an area
   };
 
   /** A connected part of the body of one material, between its outlines. */
   struct OutlineArea
   {
-    dealii::types::material_id material = 0;
-    std::vector<unsigned int>  cells;
+    dealii::types::material_id material = 0; ///< of all its cells
+    std::vector<unsigned int>  cells;        ///< indices in the gathered mesh
     /** Pieces around it, area on the left; the outer loop first. */
     std::vector<std::vector<LoopPart>> loops;
   };
@@ -28,8 +28,8 @@ namespace alveolus
   /** Outlines and interfaces of a body, taken apart. */
   struct BodyOutline
   {
-    std::vector<OutlinePiece> pieces;
-    std::vector<OutlineArea>  areas;
+    std::vector<OutlinePiece> pieces; ///< each between two ends
+    std::vector<OutlineArea>  areas;  ///< bounded by pieces
 
     /** Nodes of a loop in order, the first not repeated. */
     std::vector<unsigned int>

@@ -19,6 +19,7 @@ namespace alveolus
   /** An edge of a surface: its nodes, the smaller number first. */
   using SurfaceEdge = std::pair<unsigned int, unsigned int>;
 
+  /** Edge between two nodes. */
   inline SurfaceEdge
   surface_edge(const unsigned int a, const unsigned int b)
   {
@@ -39,6 +40,7 @@ namespace alveolus
    */
   struct BodySurface
   {
+    /** No component, layer or patch. */
     static constexpr unsigned int none =
       std::numeric_limits<unsigned int>::max();
 
@@ -52,29 +54,32 @@ namespace alveolus
       std::array<unsigned int, 2> components{{none, none}};
       unsigned int boundary = 0;    ///< boundary id, where there is none beyond
       unsigned int layer    = none; ///< between the components, if any
-      unsigned int patch    = none;
+      unsigned int patch    = none; ///< index; none until it is found
     };
 
     /** Materials of a layer from wall to wall. */
     struct Layer
     {
+      /** Of its cells, along a column. */
       std::vector<dealii::types::material_id> materials;
     };
 
+    /** Connected cells of one material. */
     struct Component
     {
-      dealii::types::material_id material = 0;
-      unsigned int               part     = 0;
+      dealii::types::material_id material = 0; ///< of all its cells
+      unsigned int               part     = 0; ///< index of the part it is in
     };
 
     /** What an edge with other than two faces, or with a name, has. */
     struct Edge
     {
-      std::vector<unsigned int>            faces;
+      std::vector<unsigned int>            faces; ///< indices of faces
       std::map<unsigned int, unsigned int> lines; ///< tag by part
       /** Boundary ids of the faces of the layer that end here, by level. */
       std::vector<unsigned int> strip;
 
+      /** Whether both carry the same names, whatever their faces. */
       bool
       operator==(const Edge &other) const
       {
@@ -87,30 +92,35 @@ namespace alveolus
     {
       /** Closed: the first node is repeated at the end. */
       std::vector<unsigned int> nodes;
-      bool                      closed = false;
-      std::set<unsigned int>    parts; ///< in which it has places
-      Edge                      ids;   ///< lines and strip, the same everywhere
+      bool                      closed = false; ///< without ends
+      std::set<unsigned int>    parts;          ///< in which it has places
+      Edge                      ids; ///< lines and strip, the same everywhere
     };
 
     /** A named point. */
     struct NamedPlace
     {
-      unsigned int node, part;
+      unsigned int node; ///< of the surface
+      unsigned int part; ///< where the name is
     };
 
     /** Nodes by part; of other parts the place has no meaning [mm]. */
     std::vector<std::vector<dealii::Point<3>>> places;
     std::vector<std::vector<bool>>             is_in; ///< part, node
-    std::vector<Component>                     components;
-    std::vector<Layer>                         layers;
-    std::vector<Face>                          faces;
-    unsigned int                               n_patches = 0;
-    std::vector<Curve>                         curves;
-    std::set<unsigned int>                     corners;
+    /** All of them, part after part. */
+    std::vector<Component> components;
+    std::vector<Layer>     layers; ///< each kind once
+    /** Of the surface, in the order of cells. */
+    std::vector<Face>  faces;
+    unsigned int       n_patches = 0; ///< their number
+    std::vector<Curve> curves;        ///< between patches
+    /** Nodes where curves end. */
+    std::set<unsigned int> corners;
     /** Tags of named lines through a layer at a corner, by level. */
     std::map<unsigned int, std::vector<unsigned int>> through;
-    std::map<std::string, NamedPlace>                 points;
+    std::map<std::string, NamedPlace>                 points; ///< by name
 
+    /** Nodes of the surface: those of walls glued together count once. */
     unsigned int
     n_nodes() const
     {

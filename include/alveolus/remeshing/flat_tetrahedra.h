@@ -9,7 +9,7 @@ namespace alveolus
   /** What divide_flat_tetrahedra() found. */
   struct FlatTetrahedra
   {
-    unsigned int n_divided = 0;
+    unsigned int n_divided = 0; ///< flat ones replaced by others
     unsigned int n_left    = 0; ///< where no vertex can be put
   };
 

@@ -15,6 +15,7 @@ namespace alveolus
   /** Ids by which a line of a triangulation belongs to names. */
   struct LineIds
   {
+    /** Of curves. */
     dealii::types::manifold_id manifold = dealii::numbers::flat_manifold_id;
     /** internal_face_boundary_id if it is not at the boundary. */
     dealii::types::boundary_id boundary =
@@ -24,12 +25,14 @@ namespace alveolus
     bool
     are_on(const std::string &curve, const NamedSets<2> &names) const;
 
+    /** An order, for use as a key. */
     bool
     operator<(const LineIds &other) const
     {
       return std::make_pair(manifold, boundary) <
              std::make_pair(other.manifold, other.boundary);
     }
+    /** Equal ids. */
     bool
     operator==(const LineIds &other) const
     {
@@ -49,11 +52,12 @@ namespace alveolus
   {
     std::vector<dealii::Point<2>>           positions; ///< current [mm]
     std::vector<dealii::Point<2>>           initial;   ///< [mm]
-    std::vector<Quad>                       cells;
+    std::vector<Quad>                       cells;     ///< nodes by number
     std::vector<dealii::types::material_id> materials; ///< of the cells
     std::map<MeshLine, LineIds>             lines;     ///< all of them
     std::map<std::string, unsigned int>     points;    ///< nodes of the names
 
+    /** Line between two nodes. */
     static MeshLine
     line(const unsigned int a, const unsigned int b)
     {

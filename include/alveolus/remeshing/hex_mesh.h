@@ -14,15 +14,19 @@ namespace alveolus
     /** A point of a patch, or of glued patches with the nodes between them. */
     struct Slider
     {
-      SurfaceMesh::Vertex vertex;
+      SurfaceMesh::Vertex vertex; ///< where the slider is now
       /** Nodes at (1 - s) x_first + s x_second. */
       struct Node
       {
-        unsigned int node, first, second; ///< parts
-        double       s;
+        unsigned int node;   ///< number in the mesh
+        unsigned int first;  ///< part
+        unsigned int second; ///< part
+        double       s;      ///< from 0 to 1
       };
+      /** That move with it: one, or those through a layer. */
       std::vector<Node> nodes;
 
+      /** Place of a node when the slider is @p at another vertex [mm]. */
       dealii::Point<3>
       place(const Node &node, const SurfaceMesh::Vertex &at) const
       {
@@ -34,15 +38,15 @@ namespace alveolus
       using Point = dealii::Point<3>;
     };
 
-    MeshDescription<3>  description;
-    std::vector<bool>   is_inside; ///< nodes that may move anywhere
-    std::vector<Slider> sliders;   ///< nodes that stay on their patches
+    MeshDescription<3>  description; ///< cells and names
+    std::vector<bool>   is_inside;   ///< nodes that may move anywhere
+    std::vector<Slider> sliders;     ///< nodes that stay on their patches
   };
 
   /** The tetrahedra of a component of the body. */
   struct FilledComponent
   {
-    Tetrahedra mesh;
+    Tetrahedra mesh; ///< vertices, first those of the surface
     /** Vertices of the surface mesh that its first vertices are. */
     std::vector<unsigned int> surface_vertices;
   };

@@ -9,8 +9,9 @@ namespace alveolus
   /** What came of optimise_hexahedra(). */
   struct HexOptimiserReport
   {
-    double       before = 0., after = 0.; ///< smallest scaled Jacobian
-    unsigned int n_sweeps = 0;
+    double       before   = 0.; ///< smallest scaled Jacobian [-]
+    double       after    = 0.; ///< smallest scaled Jacobian [-]
+    unsigned int n_sweeps = 0;  ///< times that nodes were moved
   };
 
   /**

@@ -24,9 +24,16 @@ namespace alveolus
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
 
+    /**
+     * @throws InputError for unknown regions or curves, regions that are named
+     *        twice, and strips without ends
+     */
     void
     initialize(const NamedSets<2> &names, const std::string &where) override;
 
+    /**
+     * See Remesher; one candidate for each combination of zone meshes tried.
+     */
     std::vector<RemeshCandidate<2>>
     candidates(const Configuration<2> &old,
                const std::string      &output_directory,
@@ -71,9 +78,7 @@ namespace alveolus
     std::map<unsigned int, std::shared_ptr<const AreaMesh>>
     common_areas(const GatheredMesh &mesh,
                  const NamedSets<2> &names,
-                 const std::string  &output_directory,
-                 const std::string  &name,
-                 const MPI_Comm     &communicator) const;
+                 const MeshingJob   &job) const;
   };
 } // namespace alveolus
 

@@ -20,16 +20,25 @@ namespace alveolus
   public:
     struct Parameters
     {
-      std::vector<double> times;
-      unsigned int        every                 = 0;
-      double              below_quality         = 0.2;
-      double              accept_quality        = 0.3;
-      std::string         if_none_is_acceptable = "stop";
-      bool                after_failure         = true;
-      unsigned int        max_remeshes          = 1000;
-      unsigned int        max_halvings          = 8;
-      double              uncovered_part        = 0.02;
+      std::vector<double> times; ///< planned, ascending [T]
+      /** Steps between two remeshes; 0: never for this. */
+      unsigned int every = 0;
+      /** Remesh below this scaled Jacobian [-]. */
+      double below_quality = 0.2;
+      /** New meshes below it are not taken [-]. */
+      double      accept_quality        = 0.3;
+      std::string if_none_is_acceptable = "stop"; ///< "stop" or "go on"
+      /** Try a new mesh when steps fail. */
+      bool         after_failure = true;
+      unsigned int max_remeshes  = 1000; ///< of a run
+      /** Of the part of left forces released at once. */
+      unsigned int max_halvings = 8;
+      /** Of a region outside the old one, at most [-]. */
+      double uncovered_part = 0.02;
 
+      /**
+       * Add the parameters, bound to the members, to the current subsection.
+       */
       void
       declare(dealii::ParameterHandler &prm);
     };
@@ -67,9 +76,11 @@ namespace alveolus
     /** Into and from blocks "remesh plan/..." of a checkpoint. */
     void
     save(BlockFile &blocks) const;
+    /** The same back. @throws InputError */
     void
     load(const BlockFile &blocks);
 
+    /** New meshes taken so far. */
     unsigned int
     n_remeshes() const
     {

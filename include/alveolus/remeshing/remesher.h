@@ -17,11 +17,19 @@ namespace alveolus
   template <int dim>
   struct RemeshCandidate
   {
-    Mesh<dim>   mesh;
+    Mesh<dim>   mesh;         ///< the mesh, with all names
     double      quality = 0.; ///< smallest scaled Jacobian of all corners
     std::string description;  ///< how it was made, for the log
     /** Current positions of the new nodes; empty: the initial ones. */
     std::function<NodalVector(const Configuration<dim> &)> positions;
+
+    /** Keep how it was made, also with the mesh. */
+    void
+    describe(const std::string &how)
+    {
+      description      = how;
+      mesh.description = how;
+    }
   };
 
   /**

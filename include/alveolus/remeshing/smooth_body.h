@@ -36,21 +36,24 @@ namespace alveolus
     /** Where a point of a patch is. */
     struct Place
     {
-      unsigned int          triangle = 0;
+      unsigned int triangle = 0; ///< index among the triangles
+      /** Of its corners; their sum is 1. */
       std::array<double, 3> weights{{1., 0., 0.}};
     };
 
+    /** Of a patch; its faces are divided into such. */
     struct Triangle
     {
-      std::array<unsigned int, 3> nodes{};
-      unsigned int                patch = 0;
+      std::array<unsigned int, 3> nodes{};   ///< counterclockwise, as the face
+      unsigned int                patch = 0; ///< that it is part of
     };
 
     /** @param body must outlive this object */
     explicit SmoothBody(const BodySurface &body);
 
+    /** Whose nodes the curves and patches go through. */
     const BodySurface        &body;
-    std::vector<Triangle>     triangles;
+    std::vector<Triangle>     triangles;  ///< of all patches
     std::vector<unsigned int> patch_face; ///< some face of each patch
     std::vector<double>       sizes;      ///< wanted edge length at nodes [mm]
     unsigned int              n_plain_normals = 0; ///< not fitted
@@ -71,9 +74,11 @@ namespace alveolus
     /** Arc length from the start in the first part of the curve, and back. */
     double
     arc_length(const unsigned int curve, const double u) const;
+    /** Parameter at an arc length [mm]. */
     double
     parameter(const unsigned int curve, const double arc_length) const;
 
+    /** Wanted length of edges at a point of a curve [mm]. */
     double
     size_on_curve(const unsigned int curve, const double u) const;
 
@@ -85,6 +90,7 @@ namespace alveolus
     dealii::Point<3>
     on_patch(const Place &place, const unsigned int part) const;
 
+    /** Wanted length of edges at a point of a patch [mm]. */
     double
     size_on_patch(const Place &place) const;
 

@@ -23,10 +23,11 @@ namespace alveolus
    */
   struct StripZone
   {
-    std::vector<unsigned int> rim;            ///< nodes from a_0 to b_0
-    std::vector<unsigned int> side_a, side_b; ///< nodes from rim to cut
-    std::vector<unsigned int> cut;            ///< nodes from a_k to b_k
-    std::set<MeshLine>        cut_lines;
+    std::vector<unsigned int> rim;       ///< nodes from a_0 to b_0
+    std::vector<unsigned int> side_a;    ///< nodes from rim to cut
+    std::vector<unsigned int> side_b;    ///< nodes from rim to cut
+    std::vector<unsigned int> cut;       ///< nodes from a_k to b_k
+    std::set<MeshLine>        cut_lines; ///< lines of the cut
   };
 
   /**

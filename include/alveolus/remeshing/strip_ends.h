@@ -10,8 +10,8 @@ namespace alveolus
   /** A zone at the end of a strip and a mesh of it. */
   struct ZoneChoice
   {
-    StripZone zone;
-    ZoneMesh  mesh;
+    StripZone zone; ///< which cells are replaced
+    ZoneMesh  mesh; ///< what replaces them
   };
 
   /** What there is to choose from at the ends of strips. */
@@ -43,10 +43,7 @@ namespace alveolus
                   const std::vector<std::string>             &ends,
                   const std::vector<double>                  &lengths,
                   const ZoneSettings                         &settings,
-                  const std::string                          &name,
-                  const std::string                          &output_directory,
-                  const std::string                          &where,
-                  const MPI_Comm                             &communicator);
+                  const MeshingJob                           &job);
 
   /**
    * Fill the zone of a choice in the geometry of a body whose outline was

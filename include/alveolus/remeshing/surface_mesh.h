@@ -17,32 +17,35 @@ namespace alveolus
   class SurfaceMesh
   {
   public:
+    /** No curve. */
     static constexpr unsigned int none = BodySurface::none;
 
     /** A node on a corner, a curve or a patch. */
     struct Vertex
     {
+      /** What it may move on. */
       enum class On
       {
         corner,
         curve,
         patch
       };
-      On                on    = On::corner;
+      On                on    = On::corner; ///< what it may move on
       unsigned int      index = 0;  ///< of the node, the curve or the patch
       double            u     = 0.; ///< parameter on the curve
       SmoothBody::Place place;      ///< on the patch
       double            size = 0.;  ///< wanted length of edges here [mm]
       /** Places by part; of other parts without meaning [mm]. */
       std::vector<dealii::Point<3>> x;
-      std::vector<bool>             is_in;
+      std::vector<bool>             is_in; ///< parts in which it has a place
     };
 
+    /** On one patch. */
     struct Triangle
     {
       /** Counterclockwise seen from outside of the patch's first component. */
       std::array<unsigned int, 3> vertices{};
-      unsigned int                patch = 0;
+      unsigned int                patch = 0; ///< that it is on
     };
 
     /** @param body with sizes; must outlive this object */
@@ -73,9 +76,9 @@ namespace alveolus
     double
     smallest_quality() const;
 
-    const SmoothBody     &body;
-    std::vector<Vertex>   vertices;
-    std::vector<Triangle> triangles;
+    const SmoothBody     &body;      ///< gives curves, patches and wanted edges
+    std::vector<Vertex>   vertices;  ///< of all patches
+    std::vector<Triangle> triangles; ///< of all patches
 
   private:
     Vertex

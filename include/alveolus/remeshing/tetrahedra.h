@@ -15,7 +15,7 @@ namespace alveolus
   /** How tetrahedra are made. */
   struct TetrahedraSettings
   {
-    GmshSettings gmsh;
+    GmshSettings gmsh; ///< how gmsh is run
     /** Of gmsh: 1 Delaunay, 4 frontal, 10 HXT. */
     unsigned int algorithm = 1;
     /** On the edge lengths inside. */
@@ -26,7 +26,7 @@ namespace alveolus
   struct Tetrahedra
   {
     std::vector<dealii::Point<3>>            vertices; ///< [mm]
-    std::vector<std::array<unsigned int, 4>> cells;
+    std::vector<std::array<unsigned int, 4>> cells;    ///< vertices by number
   };
 
   /**
@@ -36,7 +36,6 @@ namespace alveolus
    * @param vertices of the surface, all of them used; the first ones of the
    *        result, to the last bit
    * @param triangles all oriented alike, seen from outside counterclockwise
-   * @param name of the files without ending
    * @throws InputError if gmsh cannot be started; RunError if it makes no mesh,
    *         e.g. since the surface cuts itself, or changes the surface
    */
@@ -45,10 +44,7 @@ namespace alveolus
     const std::vector<dealii::Point<3>>            &vertices,
     const std::vector<std::array<unsigned int, 3>> &triangles,
     const TetrahedraSettings                       &settings,
-    const std::string                              &name,
-    const std::string                              &output_directory,
-    const std::string                              &where,
-    const MPI_Comm                                 &communicator);
+    const MeshingJob                               &job);
 } // namespace alveolus
 
 #endif

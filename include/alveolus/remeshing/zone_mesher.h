@@ -21,31 +21,31 @@ namespace alveolus
     /** Corners with a larger angle must have two cells [rad]. */
     double       angle_of_two_cells = 2.0;
     double       growth             = 0.25; ///< see PlanarArea
-    PlanarMesher mesher;
+    PlanarMesher mesher;                    ///< for unstructured zones
   };
 
   /** A corner of a zone between its rim and a side. */
   struct ZoneCorner
   {
     double       angle   = 0.; ///< inside the strip [rad]
-    unsigned int n_cells = 0;
+    unsigned int n_cells = 0;  ///< cells of the zone that meet there
   };
 
   /** A mesh of a zone. */
   struct ZoneMesh
   {
-    AreaMesh                      mesh;
-    std::vector<dealii::Point<2>> rim; ///< its nodes, from side a to side b
-    bool nodes_kept = true;            ///< whether these are the old ones
-    std::array<ZoneCorner, 2> corners; ///< at side a and side b
-    std::string               description;
+    AreaMesh                      mesh; ///< with the nodes of the border first
+    std::vector<dealii::Point<2>> rim;  ///< its nodes, from side a to side b
+    bool nodes_kept = true;             ///< whether these are the old ones
+    std::array<ZoneCorner, 2> corners;  ///< at side a and side b
+    std::string               description; ///< how it was made, for the log
   };
 
   /** What was tried on a zone. */
   struct ZoneMeshes
   {
-    std::vector<ZoneMesh> meshes; ///< best first
-    unsigned int          n_tried   = 0;
+    std::vector<ZoneMesh> meshes;        ///< best first
+    unsigned int          n_tried   = 0; ///< meshes made in all
     unsigned int          n_invalid = 0; ///< with inverted cells, or not made
     unsigned int          n_flat    = 0; ///< one cell where two are needed
     /** Numbers of edges whose rim would change the area too much. */
@@ -66,10 +66,7 @@ namespace alveolus
   mesh_zone(const GatheredMesh &mesh,
             const StripZone    &zone,
             const ZoneSettings &settings,
-            const std::string  &name,
-            const std::string  &output_directory,
-            const std::string  &where,
-            const MPI_Comm     &communicator);
+            const MeshingJob   &job);
 } // namespace alveolus
 
 #endif

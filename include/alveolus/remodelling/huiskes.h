@@ -17,6 +17,10 @@ namespace alveolus
   class Huiskes : public RemodellingLaw
   {
   public:
+    /**
+     * Adds `Rate`, `Reference energy`, `Dead zone` and the other constants with
+     * their units.
+     */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
 

@@ -10,12 +10,12 @@ namespace alveolus
   struct RemodellingReport
   {
     double       density_change   = 0.; ///< [g/cc]
-    unsigned int n_substeps       = 0;
-    unsigned int n_fabric_limited = 0; ///< projections onto the fabric bounds
+    unsigned int n_substeps       = 0;  ///< steps the integration took
+    unsigned int n_fabric_limited = 0;  ///< projections onto the fabric bounds
     /** Came to rest where formation and resorption meet in a jump. */
     bool at_reversal    = false;
-    bool at_lower_bound = false;
-    bool at_upper_bound = false;
+    bool at_lower_bound = false; ///< density cut off at it
+    bool at_upper_bound = false; ///< density cut off at it
   };
 
   /**

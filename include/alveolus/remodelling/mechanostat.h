@@ -29,6 +29,10 @@ namespace alveolus
   class Mechanostat : public RemodellingLaw
   {
   public:
+    /**
+     * Adds the stimulus with its lazy zone, the rates of formation and
+     * resorption, the available surface, and the anisotropy.
+     */
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
 

@@ -25,6 +25,7 @@ namespace alveolus
   public:
     virtual ~RemodellingLaw() = default;
 
+    /** Add the parameters, bound to members, to the current subsection. */
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 

@@ -29,12 +29,14 @@ namespace alveolus
     void
     keep(const std::vector<double> &stations);
 
+    /** Whether node @p i of the curve is placed by another rule. */
     bool
     is_anchor(const unsigned int i) const
     {
       return before[i] == static_cast<int>(i);
     }
 
+    /** Number of such nodes. */
     unsigned int
     n_anchors() const;
 
@@ -58,7 +60,7 @@ namespace alveolus
     double
     station(const unsigned int i, const std::vector<double> &now) const;
 
-    const NodeCurve curve;
+    const NodeCurve curve; ///< its nodes in order
 
   private:
     /** Station of index @p i, which may be one turn back or ahead. */

@@ -31,6 +31,7 @@ namespace alveolus
   class BarrierRule : public RezoningRule<dim>
   {
   public:
+    /** When the rule runs, see RezoningRule. */
     using Stage = typename RezoningRule<dim>::Stage;
 
     void

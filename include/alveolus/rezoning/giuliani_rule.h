@@ -47,6 +47,7 @@ namespace alveolus
   class GiulianiRule : public RezoningRule<dim>
   {
   public:
+    /** When the rule runs, see RezoningRule. */
     using Stage = typename RezoningRule<dim>::Stage;
 
     void

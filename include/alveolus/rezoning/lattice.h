@@ -16,6 +16,7 @@ namespace alveolus
   template <int dim>
   struct Lattice
   {
+    /** Steps from the first corner in each direction. */
     using Index = std::array<unsigned int, dim>;
 
     /**
@@ -27,6 +28,7 @@ namespace alveolus
             const std::string &name,
             const std::string &where);
 
+    /** The node at a place of the lattice. */
     NodeId
     at(const Index &index) const
     {
@@ -46,6 +48,7 @@ namespace alveolus
       return result;
     }
 
+    /** Where this place is in `nodes`: the first index runs fastest. */
     std::size_t
     position(const Index &index) const
     {
@@ -55,6 +58,7 @@ namespace alveolus
       return i;
     }
 
+    /** Whether a place is on a side of the lattice. */
     bool
     is_border(const Index &index) const
     {
@@ -64,8 +68,8 @@ namespace alveolus
       return false;
     }
 
-    Index               n; ///< steps between nodes in each direction
-    std::vector<NodeId> nodes;
+    Index               n;     ///< steps between nodes in each direction
+    std::vector<NodeId> nodes; ///< by position()
   };
 } // namespace alveolus
 

@@ -14,6 +14,7 @@ namespace alveolus
   class MaterialRule : public RezoningRule<dim>
   {
   public:
+    /** When the rule runs, see RezoningRule. */
     using Stage = typename RezoningRule<dim>::Stage;
 
     void

@@ -9,11 +9,11 @@ namespace alveolus
   /** What came of a minimisation. */
   struct MinimiseReport
   {
-    unsigned int iterations = 0;
-    unsigned int modified   = 0; ///< of these with the positive Hessian
-    unsigned int values     = 0; ///< evaluations of the energy
-    bool         converged  = false;
-    double       energy     = 0.; ///< at the end
+    unsigned int iterations = 0;     ///< Newton's steps
+    unsigned int modified   = 0;     ///< of these with the positive Hessian
+    unsigned int values     = 0;     ///< evaluations of the energy
+    bool         converged  = false; ///< whether the tolerance was reached
+    double       energy     = 0.;    ///< at the end
   };
 
   /**

@@ -33,6 +33,7 @@ namespace alveolus
     void
     add(std::unique_ptr<RezoningRule<dim>> rule, const std::string &where);
 
+    /** Whether there are no rules. */
     bool
     empty() const
     {

@@ -14,8 +14,10 @@ namespace alveolus
    */
   struct RezoningPlan
   {
-    unsigned int every         = 1;
-    double       below_quality = -1.;
+    /** Steps from one to the next; 0: not by steps. */
+    unsigned int every = 1;
+    /** Also below this quality; -1: not by it. */
+    double below_quality = -1.;
 
     /** Add the parameters to the current subsection. */
     void

@@ -19,9 +19,9 @@ namespace alveolus
   {
     /** Part of the proposed motion taken: 1 unless cut back. */
     double fraction         = 1.;
-    bool   cut_back         = false;
-    double smallest_quality = 0.; ///< scaled Jacobian after rezoning
-    double largest_motion   = 0.; ///< from the Lagrangian positions [mm]
+    bool   cut_back         = false; ///< whether a part only was taken
+    double smallest_quality = 0.;    ///< scaled Jacobian after rezoning
+    double largest_motion   = 0.;    ///< from the Lagrangian positions [mm]
     /** Sweeps of iterative rules, all together. */
     unsigned int sweeps = 0;
     /** Iterative rules that stopped at their largest number of sweeps. */
@@ -40,6 +40,7 @@ namespace alveolus
   class RezoningRule
   {
   public:
+    /** When a rule runs: what it moves, from points to volumes. */
     enum class Stage
     {
       points,

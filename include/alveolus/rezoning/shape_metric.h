@@ -26,6 +26,7 @@ namespace alveolus
   class ShapeMetric
   {
   public:
+    /** @param size_weight weight of sizes beside shapes [-] */
     explicit ShapeMetric(const double size_weight = 0.)
       : size_weight(size_weight)
     {}

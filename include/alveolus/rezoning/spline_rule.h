@@ -20,6 +20,7 @@ namespace alveolus
   class SplineRule : public RezoningRule<dim>
   {
   public:
+    /** When the rule runs, see RezoningRule. */
     using Stage = typename RezoningRule<dim>::Stage;
 
     void

@@ -17,6 +17,7 @@ namespace alveolus
   class StraightRule : public RezoningRule<dim>
   {
   public:
+    /** When the rule runs, see RezoningRule. */
     using Stage = typename RezoningRule<dim>::Stage;
 
     void

@@ -18,6 +18,7 @@ namespace alveolus
   class SurfacePatch
   {
   public:
+    /** Position of a node [mm]. */
     using Place = dealii::Point<3>;
 
     /**

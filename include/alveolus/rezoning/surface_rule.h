@@ -19,17 +19,24 @@ namespace alveolus
   class SurfaceRule : public RezoningRule<3>
   {
   public:
+    /** When the rule runs, see RezoningRule. */
     using Stage = typename RezoningRule<3>::Stage;
 
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
+    /** Surfaces. @throws InputError if a name is unknown */
     Stage
     stage(const NamedSets<3> &names, const std::string &where) const override;
+    /**
+     * Find the surfaces and hold the nodes in @p taken (collective). @throws
+     * InputError
+     */
     void
     attach(const Nodes<3>         &nodes,
            const NodalVector      &positions,
            const std::set<NodeId> &taken,
            const std::string      &where) override;
+    /** Move the nodes of the surfaces along them (collective). */
     void
     apply(const Nodes<3>    &nodes,
           const NodalVector &start,

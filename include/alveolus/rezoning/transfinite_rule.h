@@ -34,6 +34,7 @@ namespace alveolus
   class TransfiniteRule : public RezoningRule<dim>
   {
   public:
+    /** When the rule runs, see RezoningRule. */
     using Stage = typename RezoningRule<dim>::Stage;
 
     void

@@ -25,9 +25,9 @@ namespace alveolus
   public:
     struct Entry
     {
-      std::vector<std::string> section; ///< path of subsections
-      std::string              name;
-      std::string              value;
+      std::vector<std::string> section;   ///< path of subsections
+      std::string              name;      ///< of the parameter
+      std::string              value;     ///< as it stands there
       std::string              origin;    ///< "file:line" or "--set"
       std::string              directory; ///< of that file, "" for "--set"
 
@@ -89,7 +89,8 @@ namespace alveolus
           std::vector<std::string>     problems = {},
           const std::set<std::string> &unknown  = {}) const;
 
-    std::string        file_name;
+    std::string file_name; ///< of the scene, in messages
+    /** All of them, later ones override earlier ones. */
     std::vector<Entry> entries;
 
   private:

@@ -43,11 +43,12 @@ namespace alveolus
 
     struct Region
     {
-      std::string name;
-      std::string on;
-      std::string material;
+      std::string name;     ///< of its subsection
+      std::string on;       ///< regions of the mesh, by commas
+      std::string material; ///< name in Materials
+      /** Of volume, against locking. */
       std::string treatment   = "mean dilatation";
-      std::string remodelling = "none";
+      std::string remodelling = "none"; ///< name in Remodelling, or "none"
       /** history, reference map or isochoric reference map */
       std::string deformation = "history";
     };
@@ -55,50 +56,62 @@ namespace alveolus
     template <class Interface>
     struct Named
     {
-      std::string                name;
-      std::string                where; ///< path of the subsection
-      std::string                type;
-      std::unique_ptr<Interface> object;
+      std::string                name;   ///< of its subsection
+      std::string                where;  ///< path of the subsection
+      std::string                type;   ///< registered name of its class
+      std::unique_ptr<Interface> object; ///< with its parameters
     };
 
-    std::string  title;
-    unsigned int degree                  = 1;
+    std::string  title;      ///< for reports and pictures
+    unsigned int degree = 1; ///< of elements: 1 or 2
+    /** Larger meshes are refused. */
     unsigned int largest_number_of_cells = 10000000;
-    std::string  mesh_type;
+    std::string  mesh_type; ///< registered name of the mesh source
 
-    std::unique_ptr<MeshSource<dim>>      mesh_source;
-    std::vector<Region>                   regions;
-    std::vector<Named<Material>>          materials;
-    InterfaceLaws                         interface_laws;
-    std::vector<Named<RemodellingLaw>>    remodelling_laws;
-    std::vector<Named<Condition<dim>>>    conditions;
+    std::unique_ptr<MeshSource<dim>> mesh_source; ///< makes the first mesh
+    std::vector<Region>              regions;     ///< every cell is in one
+    std::vector<Named<Material>>     materials;   ///< by name, for regions
+    /** By name, for conditions. */
+    InterfaceLaws interface_laws;
+    /** By name, for regions. */
+    std::vector<Named<RemodellingLaw>> remodelling_laws;
+    /** Loads, supports, rigid bodies, contacts, layers. */
+    std::vector<Named<Condition<dim>>> conditions;
+    /** In the order of the file. */
     std::vector<Named<RezoningRule<dim>>> rezoning_rules;
-    std::vector<Named<Recorder<dim>>>     recorders;
+    /** Columns of the history file. */
+    std::vector<Named<Recorder<dim>>> recorders;
 
-    typename Equilibrium<dim>::Parameters   solver;
+    typename Equilibrium<dim>::Parameters solver; ///< of Newton's method
+    /** Of equilibrium and remodelling. */
     typename StaggeredStep<dim>::Parameters coupling;
 
-    RezoningPlan rezoning_plan;
+    RezoningPlan rezoning_plan; ///< when to rezone
 
-    std::string transfer_scheme        = "Godunov";
-    double      largest_donor_fraction = 0.5;
+    std::string transfer_scheme = "Godunov"; ///< registered name
+    /** Of a sub-cell swept in a subcycle of the transfer [-]. */
+    double largest_donor_fraction = 0.5;
 
+    /** Registered name, or "none". */
     std::string                    remesher_type = "none";
     std::unique_ptr<Remesher<dim>> remesher; ///< null if there is none
-    RemeshPlan::Parameters         remesh_plan;
+    /** When to remesh, and what is accepted. */
+    RemeshPlan::Parameters remesh_plan;
 
+    /** "stop" rejects the step, "report" counts. */
     std::string inverted_corners = "stop";
-    double      minimum_quality  = -1.;
-    bool        energy_balance   = true;
-    double      warn_quality     = 0.3;
+    double      minimum_quality  = -1.;  ///< the run stops below it; -1: never
+    bool        energy_balance   = true; ///< whether books of energy are kept
+    /** The log tells what is below; -1: never. */
+    double warn_quality = 0.3;
 
-    StepControl::Parameters time;
+    StepControl::Parameters time; ///< of steps and the end
 
-    std::string output_directory;
-    double      field_interval = 0.;
-    bool        fields         = true;
+    std::string output_directory;    ///< created if need be
+    double      field_interval = 0.; ///< of files [T]; 0: first and last state
+    bool        fields         = true; ///< whether there are files of fields
 
-    CheckpointFolder::Parameters checkpoint;
+    CheckpointFolder::Parameters checkpoint; ///< when to write them
 
     /** Index of the remodelling law of a region, or -1. */
     int

@@ -19,7 +19,7 @@ namespace alveolus
     unsigned int        n_iterations = 0; ///< linear systems solved
     std::vector<double> residuals; ///< L1 norm over the sum of internal forces
     unsigned int        n_line_search = 0; ///< halvings of the Newton step
-    unsigned int        n_linear_iterations = 0;
+    unsigned int        n_linear_iterations = 0;  ///< of all linear systems
     double              linear_residual     = 0.; ///< relative, the largest
     unsigned int        n_direct_instead    = 0;  ///< failed iterations
     unsigned int        n_augmentations     = 0;  ///< of multipliers
@@ -51,19 +51,30 @@ namespace alveolus
   public:
     struct Parameters
     {
+      /** Of the residual, over the sum of internal forces [-]. */
       double       tolerance          = 1e-9;
-      double       absolute_tolerance = 1e-10;
-      unsigned int max_iterations     = 15;
-      unsigned int max_line_search    = 6;
-      std::string  predictor          = "extrapolated";
-      bool         report_imbalance   = false;
-      std::string  linear_solver      = "automatic";
-      double       linear_tolerance   = 1e-10;
+      double       absolute_tolerance = 1e-10; ///< or below this [N (per mm)]
+      unsigned int max_iterations     = 15;    ///< Newton's steps, at most
+      unsigned int max_line_search    = 6; ///< halvings of one of them, at most
+      /** "extrapolated" or "linear": the first guess. */
+      std::string predictor        = "extrapolated";
+      bool        report_imbalance = false; ///< of the state before the step
+      /** "automatic", "direct", "cg" or "gmres". */
+      std::string linear_solver = "automatic";
+      /** Of iterative solvers, relative [-]. */
+      double linear_tolerance = 1e-10;
 
+      /**
+       * Add the parameters, bound to the members, to the current subsection.
+       */
       void
       declare(dealii::ParameterHandler &prm);
     };
 
+    /**
+     * @param regions by index, as in the history
+     * @param timer of the phases of a step; all must outlive this object
+     */
     Equilibrium(State<dim>                                   &state,
                 const std::vector<Region>                    &regions,
                 typename MechanicsAssembler<dim>::Conditions &conditions,
@@ -73,8 +84,8 @@ namespace alveolus
     /** Nodal forces a remesh left unbalanced, and the part still held. */
     struct Imbalance
     {
-      NodalVector forces; ///< internal minus external [N (per mm)]
-      double      part = 1.;
+      NodalVector forces;    ///< internal minus external [N (per mm)]
+      double      part = 1.; ///< that is still held: from 1 to 0
     };
 
     /**
@@ -122,6 +133,7 @@ namespace alveolus
       return residual_vector;
     }
 
+    /** Forces and tangent of the last iteration. */
     const MechanicsAssembler<dim> &
     assembly() const
     {
@@ -135,12 +147,14 @@ namespace alveolus
       assembler.keep_moved_weights();
     }
 
+    /** Whether the linear solver iterates. */
     bool
     solves_by_iteration() const
     {
       return system->is_iterative();
     }
 
+    /** What solves the linear systems, for the log. */
     std::string
     linear_solver_name() const
     {

@@ -11,11 +11,12 @@ namespace alveolus
   /** What remodelling did in a step, over all processes. */
   struct RemodellingSummary
   {
-    double       largest_density_change = 0.; ///< at a point [g/cc]
-    unsigned int n_fabric_limited       = 0;
-    unsigned int n_at_lower_bound       = 0;
-    unsigned int n_at_upper_bound       = 0;
-    unsigned int n_coupling_iterations  = 0;
+    double largest_density_change = 0.; ///< at a point [g/cc]
+    /** Points whose fabric was kept in its bounds. */
+    unsigned int n_fabric_limited      = 0;
+    unsigned int n_at_lower_bound      = 0; ///< points at the lowest density
+    unsigned int n_at_upper_bound      = 0; ///< points at the highest density
+    unsigned int n_coupling_iterations = 0; ///< equilibria of an iterated step
     std::string  failure; ///< why a point could not be integrated, if any
 
     // Where the books of energy are kept [mJ (per mm)]:
@@ -23,16 +24,17 @@ namespace alveolus
     double energy = 0.;
     /**
      * Stored at the end less stored by the last equilibrium, with the weights
-     * of the mesh x_n and of the moved one.
+     * of the mesh x_n.
      */
-    double stored = 0., stored_moved = 0.;
+    double stored       = 0.;
+    double stored_moved = 0.; ///< the same with those of the moved mesh
   };
 
   /** The remodelling of one region: null pointers where there is none. */
   struct RegionRemodelling
   {
-    const RemodellingLaw *law  = nullptr;
-    const RemodelledBone *bone = nullptr;
+    const RemodellingLaw *law  = nullptr; ///< rates of density and fabric
+    const RemodelledBone *bone = nullptr; ///< the material that they change
   };
 
   /**
@@ -48,17 +50,30 @@ namespace alveolus
   public:
     struct Parameters
     {
-      std::string  coupling                = "staggered";
-      double       coupling_tolerance      = 1e-4;
+      /** "staggered" or "iterated". */
+      std::string coupling = "staggered";
+      /** Of the density between iterations [g/cc]. */
+      double coupling_tolerance = 1e-4;
+      /** Then the step is repeated, smaller. */
       unsigned int max_coupling_iterations = 20;
-      double       local_tolerance         = 1e-6;
-      double       max_density_change      = 0.1;
-      double       filter_length           = 0.;
+      /** Of the integration at a point [g/cc, and relative]. */
+      double local_tolerance = 1e-6;
+      /** At a point in a step, else it is repeated [g/cc]. */
+      double max_density_change = 0.1;
+      /** Of the stimulus [mm]; 0: none. */
+      double filter_length = 0.;
 
+      /**
+       * Add the parameters, bound to the members, to the current subsection.
+       */
       void
       declare(dealii::ParameterHandler &prm);
     };
 
+    /**
+     * @param remodelling by region
+     * @param timer of the phases of a step; all must outlive this object
+     */
     StaggeredStep(State<dim>                           &state,
                   Equilibrium<dim>                     &equilibrium,
                   const std::vector<RegionRemodelling> &remodelling,

@@ -15,9 +15,9 @@ namespace alveolus
   /** A quantity of a step that is to stay below a bound. */
   struct StepLimit
   {
-    std::string cause; ///< what it is, in few words
-    double      measured;
-    double      allowed; ///< 0: no limit
+    std::string cause;    ///< what it is, in few words
+    double      measured; ///< in the last step
+    double      allowed;  ///< 0: no limit
   };
 
   /**
@@ -31,13 +31,14 @@ namespace alveolus
   public:
     struct Parameters
     {
-      double       end             = 1.;
-      double       initial_step    = 0.1;
-      double       minimum_step    = 1e-5;
-      double       maximum_step    = 0.1;
+      double end          = 1.;   ///< of the run [T]
+      double initial_step = 0.1;  ///< [T]
+      double minimum_step = 1e-5; ///< shorter ones stop the run [T]
+      double maximum_step = 0.1;  ///< [T]
+      /** Of the step after a rejected attempt [-]. */
       double       cut_factor      = 0.5;
-      double       growth_factor   = 1.5;
-      unsigned int easy_iterations = 6;
+      double       growth_factor   = 1.5; ///< of the step after an easy one [-]
+      unsigned int easy_iterations = 6; ///< of Newton, at most, in an easy step
       /** Part of a sub-cell's volume that rezoning sweeps in a step. */
       double largest_swept_fraction = 10.;
       /** Of the smallest scaled Jacobian, by the motion of the material. */
@@ -45,10 +46,14 @@ namespace alveolus
       /** Largest change of density in a step to aim at [g/cc]; 0: none. */
       double wanted_density_change = 0.;
 
+      /**
+       * Add the parameters, bound to the members, to the current subsection.
+       */
       void
       declare(dealii::ParameterHandler &prm);
     };
 
+    /** Begin with the initial step. */
     explicit StepControl(const Parameters &parameters);
 
     /**
@@ -97,9 +102,11 @@ namespace alveolus
     /** Into and from blocks "step control/..." of a checkpoint. */
     void
     save(BlockFile &blocks) const;
+    /** The same back. @throws InputError */
     void
     load(const BlockFile &blocks);
 
+    /** Length of the next step before next() shortens it [T]. */
     double
     step() const
     {

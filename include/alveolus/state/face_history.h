@@ -23,15 +23,22 @@ namespace alveolus
   class FaceHistory
   {
   public:
+    /** Of the mesh whose boundary it is. */
     using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
 
     /** A boundary face by its cell. */
     struct Face
     {
+      /** That the face belongs to. */
       typename Triangulation::active_cell_iterator cell;
-      unsigned int                                 face_no;
+      /** Its number on the cell. */
+      unsigned int face_no;
     };
 
+    /**
+     * @param boundary_ids of the faces that have history
+     * @param n_components numbers at each point
+     */
     FaceHistory(const Triangulation                        &triangulation,
                 const std::set<dealii::types::boundary_id> &boundary_ids,
                 const unsigned int                          n_points_per_face,
@@ -51,21 +58,25 @@ namespace alveolus
     unsigned int
     index(const unsigned int cell, const unsigned int face_no) const;
 
+    /** The numbers of a point of a face at t_n. */
     double *
     old_record(const unsigned int face, const unsigned int point)
     {
       return old_values.data() + (face * n_points + point) * n_components;
     }
+    /** The numbers of a point of a face at t_n. */
     const double *
     old_record(const unsigned int face, const unsigned int point) const
     {
       return old_values.data() + (face * n_points + point) * n_components;
     }
+    /** The same at the end of the step that is tried. */
     double *
     trial_record(const unsigned int face, const unsigned int point)
     {
       return trial_values.data() + (face * n_points + point) * n_components;
     }
+    /** The same at the end of the step that is tried. */
     const double *
     trial_record(const unsigned int face, const unsigned int point) const
     {
@@ -81,11 +92,11 @@ namespace alveolus
 
     /** All values, for snapshots and checkpoints. */
     std::vector<double> old_values;
-    std::vector<double> trial_values;
+    std::vector<double> trial_values; ///< All values, those of t_{n+1}.
 
-    const Triangulation &triangulation;
-    const unsigned int   n_points;
-    const unsigned int   n_components;
+    const Triangulation &triangulation; ///< whose faces these are
+    const unsigned int   n_points;      ///< of each face
+    const unsigned int   n_components;  ///< numbers at each point
 
   private:
     std::vector<Face>                                             face_list;

@@ -17,6 +17,7 @@ namespace alveolus
   class GhostExchange
   {
   public:
+    /** Of the mesh whose cells exchange. */
     using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
 
     /** Build the pattern (collective). */

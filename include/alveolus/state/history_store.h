@@ -25,6 +25,7 @@ namespace alveolus
   class HistoryStore
   {
   public:
+    /** Of the mesh whose history it is. */
     using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
 
     /**
@@ -45,36 +46,42 @@ namespace alveolus
       return cell_region[cell];
     }
 
+    /** Which fields the records of a region have. */
     const HistoryLayout &
     layout(const unsigned int region) const
     {
       return layouts[region];
     }
 
+    /** Number of regions. */
     unsigned int
     n_regions() const
     {
       return layouts.size();
     }
 
+    /** The values of a point of a cell at t_n. */
     double *
     old_record(const unsigned int cell, const unsigned int point)
     {
       return old_values.data() + begin[cell] +
              point * layouts[cell_region[cell]].size;
     }
+    /** The values of a point of a cell at t_n. */
     const double *
     old_record(const unsigned int cell, const unsigned int point) const
     {
       return old_values.data() + begin[cell] +
              point * layouts[cell_region[cell]].size;
     }
+    /** The same at the end of the step that is tried. */
     double *
     trial_record(const unsigned int cell, const unsigned int point)
     {
       return trial_values.data() + begin[cell] +
              point * layouts[cell_region[cell]].size;
     }
+    /** The same at the end of the step that is tried. */
     const double *
     trial_record(const unsigned int cell, const unsigned int point) const
     {
@@ -116,10 +123,10 @@ namespace alveolus
 
     /** All old values, for snapshots and checkpoints. */
     std::vector<double> old_values;
-    std::vector<double> trial_values;
+    std::vector<double> trial_values; ///< All values, those of t_{n+1}.
 
-    const Triangulation &triangulation;
-    const unsigned int   n_points;
+    const Triangulation &triangulation; ///< whose cells these are
+    const unsigned int   n_points;      ///< of each cell
 
   private:
     std::vector<HistoryLayout> layouts;

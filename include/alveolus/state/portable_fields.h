@@ -63,6 +63,10 @@ namespace alveolus
     save(const HistoryStore<dim> &history,
          const std::string       &name,
          BlockFile               &blocks) const;
+    /**
+     * The same back, on any number of processes. @throws InputError if they do
+     * not fit
+     */
     void
     load(const BlockFile   &blocks,
          const std::string &name,
@@ -73,12 +77,13 @@ namespace alveolus
     save(const FaceHistory<dim> &history,
          const std::string      &name,
          BlockFile              &blocks) const;
+    /** The same back. @throws InputError if they do not fit */
     void
     load(const BlockFile   &blocks,
          const std::string &name,
          FaceHistory<dim>  &history) const;
 
-    const Configuration<dim> &configuration;
+    const Configuration<dim> &configuration; ///< that the history belongs to
 
   private:
     std::vector<std::size_t>

@@ -18,6 +18,12 @@ namespace alveolus
   template <int dim>
   struct State
   {
+    /**
+     * The undeformed body.
+     * @param degree of the elements
+     * @param region_of_material region index by material id
+     * @param layouts of the history, by region
+     */
     State(const Mesh<dim>   &mesh,
           const unsigned int degree,
           const std::map<dealii::types::material_id, unsigned int>
@@ -50,11 +56,11 @@ namespace alveolus
       history.commit();
     }
 
-    Configuration<dim> configuration;
-    Nodes<dim>         nodes;
-    NodalVector        displacement; ///< u of the material at the nodes [mm]
-    NodalVector        increment;    ///< du of the last accepted step [mm]
-    HistoryStore<dim>  history;
+    Configuration<dim> configuration;  ///< the mesh, where it is now
+    Nodes<dim>         nodes;          ///< its nodes and their sets
+    NodalVector        displacement;   ///< u of the material at the nodes [mm]
+    NodalVector        increment;      ///< du of the last accepted step [mm]
+    HistoryStore<dim>  history;        ///< of the quadrature points
     double             time      = 0.; ///< [T]
     double             last_step = 0.; ///< length of the last step [T]
   };

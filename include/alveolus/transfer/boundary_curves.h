@@ -16,13 +16,16 @@ namespace alveolus
   /** A boundary edge of the plane with its history, kept by every process. */
   struct BoundaryEdge
   {
+    /** Positions of all nodes of an edge [mm]. */
     using Nodes = std::vector<dealii::Point<2>>;
 
     std::array<dealii::types::global_dof_index, 2> vertex; ///< ids of the ends
     std::array<dealii::Point<2>, 2> initial; ///< where the ends began [mm]
-    Nodes               before, after;       ///< in the face's direction [mm]
-    std::vector<double> values;              ///< by sub-segment and component
+    Nodes                           before;  ///< in the face's direction [mm]
+    Nodes                           after;   ///< the same, moved [mm]
+    std::vector<double>             values;  ///< by sub-segment and component
 
+    /** For Boost.Serialization. */
     template <class Archive>
     void
     serialize(Archive &archive, const unsigned int)
@@ -37,12 +40,12 @@ namespace alveolus
     /** The place of an edge in its curve. */
     struct Link
     {
-      unsigned int edge;
-      bool         reversed;
+      unsigned int edge;     ///< index of the edge
+      bool         reversed; ///< against the edge's direction
     };
 
-    std::vector<Link> links;
-    bool              closed = false;
+    std::vector<Link> links;          ///< edges from begin to end
+    bool              closed = false; ///< whether the last one meets the first
   };
 
   /**
@@ -109,8 +112,8 @@ namespace alveolus
    */
   struct ArcLengths
   {
-    std::vector<double> ends;
-    bool                closed = false;
+    std::vector<double> ends;           ///< by sub-segment [mm]
+    bool                closed = false; ///< whether the end is the begin
 
     /** Number of the sub-segment at arc length @p x (not unwound). */
     unsigned int

@@ -23,10 +23,14 @@ namespace alveolus
   class CellNodes
   {
   public:
+    /** Largest degree of elements. */
     static constexpr unsigned int max_degree = 3;
-    static constexpr unsigned int max_nodes  = dim == 2 ? 16 : 64;
+    /** Nodes of a cell of that degree. */
+    static constexpr unsigned int max_nodes = dim == 2 ? 16 : 64;
 
+    /** A vector at each node of a cell. */
     using NodeTensors = std::array<dealii::Tensor<1, dim>, max_nodes>;
+    /** A number at each node of a cell. */
     using NodeNumbers = std::array<double, max_nodes>;
 
     /** @throws RunError if the degree is above max_degree */
@@ -94,7 +98,7 @@ namespace alveolus
       return unit_positions[node];
     }
 
-    const unsigned int degree;
+    const unsigned int degree;  ///< of the elements
     const unsigned int n_nodes; ///< per cell
 
   private:

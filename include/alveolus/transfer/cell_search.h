@@ -18,11 +18,13 @@ namespace alveolus
   class CellSearch
   {
   public:
+    /** A vector at each node of a cell. */
     using NodeTensors = typename CellNodes<dim>::NodeTensors;
 
     /** Where a point is. */
     struct Place
     {
+      /** Active cell index, or invalid. */
       unsigned int       cell = dealii::numbers::invalid_unsigned_int;
       dealii::Point<dim> xi; ///< unit coordinates in that cell
       /** Node of the cell that the point coincides with, if any. */

@@ -14,12 +14,13 @@ namespace alveolus
   struct FaceTransferReport
   {
     double length_before = 0.; ///< of the boundary [mm]
-    double length_after  = 0.;
+    double length_after  = 0.; ///< the same afterwards [mm]
     /** Integrals over old and new boundary by component [unit mm]. */
     std::vector<double> integral_before;
-    std::vector<double> integral_after;
+    std::vector<double> integral_after; ///< the same afterwards
     double largest_distance = 0.; ///< of new points from the old curve [mm]
-    bool   moved            = false;
+    /** False: the boundary stayed, nothing was done. */
+    bool moved = false;
   };
 
   /**
@@ -41,6 +42,7 @@ namespace alveolus
   class FaceTransfer
   {
   public:
+    /** @param configuration of the mesh whose boundary it is */
     explicit FaceTransfer(const Configuration<dim> &configuration);
 
     /**

@@ -21,6 +21,7 @@ namespace alveolus
   class HistoryPicture
   {
   public:
+    /** A vector at each node of a cell. */
     using NodeTensors = typename CellNodes<dim>::NodeTensors;
 
     /**
@@ -38,6 +39,7 @@ namespace alveolus
     std::vector<NodeTensors>
     gather(const NodalVector &u, const MPI_Comm &communicator) const;
 
+    /** The values of a sub-cell, in the layout of its region. */
     const double *
     record(const unsigned int sub_cell) const
     {
@@ -46,13 +48,14 @@ namespace alveolus
              (sub_cell % n_points) * layouts[region[cell]].size;
     }
 
+    /** Cells of all processes. */
     unsigned int
     n_cells() const
     {
       return region.size();
     }
 
-    const CellNodes<dim>       nodes;
+    const CellNodes<dim>       nodes;    ///< shape functions of its cells
     const unsigned int         n_points; ///< sub-cells per cell
     std::vector<double>        breaks;   ///< of SubCells
     std::vector<HistoryLayout> layouts;  ///< by region

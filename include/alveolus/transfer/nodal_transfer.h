@@ -13,7 +13,7 @@ namespace alveolus
   /** What a nodal transfer did (over all processes). */
   struct NodalTransferReport
   {
-    unsigned int n_subcycles = 0;
+    unsigned int n_subcycles = 0; ///< parts that the motion was divided into
     unsigned int n_moved     = 0; ///< nodes evaluated
     /** Nodes outside the old mesh, e.g. on a curved boundary. */
     unsigned int n_extrapolated   = 0;

@@ -25,17 +25,17 @@ namespace alveolus
       double uncovered = 0.;
       /** Smallest covered part of a new sub-cell's volume. */
       double least_covered  = 1.;
-      double content_before = 0.;
-      double content_after  = 0.;
+      double content_before = 0.; ///< on the old mesh [unit mm^dim]
+      double content_after  = 0.; ///< on the new mesh [unit mm^dim]
       /** What the parts of the new region that no old sub-cell covers have, and
        * what those of the old one had that no new one covers. So content_after
        * = content_before + gained - lost but for round-off and for values
        * brought back into bounds. */
       double content_gained = 0.;
-      double content_lost   = 0.;
+      double content_lost   = 0.; ///< see content_gained
     };
 
-    std::vector<Region> regions;
+    std::vector<Region> regions; ///< in the scene's order
     /** New sub-cells outside the old region, which took the nearest value. */
     unsigned int n_uncovered = 0;
     /** Values brought back into field bounds from beyond round-off. */
@@ -50,6 +50,7 @@ namespace alveolus
     /** Sum of the contents of all regions. */
     double
     content_before() const;
+    /** The same on the new mesh. */
     double
     content_after() const;
     /** Of all regions, what is gained less what is lost at outlines. */

@@ -31,7 +31,7 @@ namespace alveolus
     unsigned int n_projected = 0;
     /** The farthest of them [mm], also in edge lengths there [-]. */
     double largest_distance          = 0.;
-    double largest_relative_distance = 0.;
+    double largest_relative_distance = 0.; ///< the same in edge lengths
 
     /** Why the map cannot be taken; empty if it can. */
     std::string

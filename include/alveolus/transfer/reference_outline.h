@@ -30,7 +30,7 @@ namespace alveolus
   {
     unsigned int  cell;    ///< active cell index, in one of the regions
     unsigned int  face_no; ///< of that cell
-    std::uint64_t key;
+    std::uint64_t key;     ///< the same face has it on every process
   };
 
   /**
@@ -69,6 +69,7 @@ namespace alveolus
     /** From blocks "reference outline/...". @throws InputError */
     explicit ReferenceOutline(const BlockFile &blocks);
 
+    /** Into blocks of a checkpoint. */
     void
     save(BlockFile &blocks) const;
 

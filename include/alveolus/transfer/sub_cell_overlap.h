@@ -24,8 +24,9 @@ namespace alveolus
   template <int dim>
   struct OverlapTarget
   {
-    unsigned int            cell, point; ///< active cell index, point
-    std::vector<Share<dim>> shares;
+    unsigned int            cell;   ///< active cell index
+    unsigned int            point;  ///< quadrature point of the sub-cell
+    std::vector<Share<dim>> shares; ///< of the old sub-cells that it overlaps
     double                  volume  = 0.; ///< of its pieces [mm^dim]
     double                  covered = 0.; ///< of all shares [mm^dim]
   };

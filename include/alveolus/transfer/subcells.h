@@ -34,6 +34,7 @@ namespace alveolus
   class SubCells
   {
   public:
+    /** No sub-cell. */
     static constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
 
     /**
@@ -52,7 +53,7 @@ namespace alveolus
     /** A face as seen from one of its sub-cells. */
     struct Incidence
     {
-      unsigned int face;
+      unsigned int face; ///< index of the face
       unsigned int side; ///< which one of Face::sub_cell is the viewer
     };
 
@@ -65,6 +66,7 @@ namespace alveolus
     SubCells(const Configuration<dim>                        &configuration,
              const std::function<unsigned int(unsigned int)> &region);
 
+    /** Sub-cells are numbered from 0 to one less than this. */
     unsigned int
     n_sub_cells() const
     {
@@ -147,7 +149,7 @@ namespace alveolus
       return breaks_1d;
     }
 
-    const CellNodes<dim> nodes;
+    const CellNodes<dim> nodes;    ///< shape functions of the cells
     const unsigned int   n_points; ///< sub-cells per cell
     /** Places for faces: 2 dim, with hanging nodes times 2^(dim-1). */
     const unsigned int faces_per_sub_cell;

@@ -14,7 +14,7 @@ namespace alveolus
   /** What a transfer did. */
   struct TransferReport
   {
-    unsigned int n_subcycles = 0;
+    unsigned int n_subcycles = 0; ///< parts that the motion was divided into
     /**
      * Largest part of a sub-cell's volume that leaves it in the whole motion,
      * its CFL number.
@@ -29,7 +29,7 @@ namespace alveolus
      * processes, e.g. density: [unit mm^dim].
      */
     double content_before   = 0.;
-    double content_after    = 0.;
+    double content_after    = 0.; ///< the same afterwards
     double through_boundary = 0.; ///< booked at domain and region faces
     /** content_after - content_before - through_boundary */
     double
@@ -72,6 +72,7 @@ namespace alveolus
              const NodalVector &x_old,
              const NodalVector &x_new);
 
+    /** The geometry it works on. */
     const SubCells<dim> &
     subcells() const
     {

@@ -14,17 +14,19 @@ namespace alveolus
   template <int dim>
   struct SweptStep
   {
-    const SubCells<dim>     &cells;
+    const SubCells<dim>     &cells; ///< geometry and neighbours
     const HistoryStore<dim> &store; ///< regions and layouts
     /** Old records, with valid ghosts, where HistoryStore keeps them. */
     const std::vector<double> &values;
     /** Where the record of each active cell begins in `values`. */
     const std::vector<std::size_t> &begin;
-    const NodalVector              &x_before;
-    const NodalVector              &x_after;
+    /** Positions of the nodes at the begin [mm]. */
+    const NodalVector &x_before;
+    /** Positions of the nodes at the end [mm]. */
+    const NodalVector &x_after;
     /** By sub-cell; owned ones [mm^dim]. */
     const std::vector<double> &volume_before;
-    const std::vector<double> &volume_after;
+    const std::vector<double> &volume_after; ///< the same at the end [mm^dim]
     /** By SubCells::faces(), positive where the first sub-cell grows. */
     const std::vector<double> &swept;
 
