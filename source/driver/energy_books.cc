@@ -59,7 +59,8 @@ namespace alveolus
     const Tensor<2, 3>        at_rest(unit_symmetric_tensor<3>());
     std::vector<double>       trial;
     MaterialResponse          response;
-    double                    energy = 0.;
+    response.no_flow = true; // which the next step books
+    double energy    = 0.;
     for (const auto &cell : configuration.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {

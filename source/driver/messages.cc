@@ -10,9 +10,11 @@ namespace alveolus
   {
     static const std::map<std::string, std::string> advice = {
       {"Newton",
-       "look at the residuals in log.txt: if they no longer fall, raise "
-       "`Solver / Tolerance`; if they jump, check loads and materials, or allow "
-       "more `Solver / Maximum iterations`"},
+       "the load may be more than the body carries: see the forces in "
+       "history.csv, and go on beyond by a motion in its place; then look at "
+       "the residuals in log.txt: if they no longer fall, raise `Solver / "
+       "Tolerance`; if they jump, check loads and materials, or allow more "
+       "`Solver / Maximum iterations`"},
       {"linear solver",
        "check that the conditions hold every body, or choose another `Solver / "
        "Linear solver`"},

@@ -184,7 +184,7 @@ namespace alveolus
                            verdict.reason +
                              " even in the smallest step allowed (" +
                              number(scene.time.minimum_step) + " T)",
-                           advice_for(verdict.cause));
+                           advice_against(verdict.cause));
           }
 
         const NodalVector start = model->state->configuration.positions();
@@ -201,11 +201,15 @@ namespace alveolus
             {
               rezone_if_due(start);
             }
-          catch (const RunError &)
+          catch (const RunError &error)
             {
               // It left the mesh as it was: the step itself is a result.
+              const std::string mesh = quality_if_low(model->quality());
               conclude();
-              throw;
+              throw RunError("t = " + number(model->state->time, 8) +
+                               " T, after the step",
+                             error.what() + (mesh.empty() ? "" : "; " + mesh),
+                             "");
             }
         conclude();
         write_fields(false);

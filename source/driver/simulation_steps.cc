@@ -73,6 +73,39 @@ namespace alveolus
 
 
   template <int dim>
+  std::string
+  Simulation<dim>::quality_if_low(const QualitySummary<dim> &judged) const
+  {
+    if (!(judged.smallest_scaled_jacobian < scene.warn_quality))
+      return "";
+    std::ostringstream text;
+    text << "elements have become flat, the smallest scaled Jacobian is "
+         << number(judged.smallest_scaled_jacobian, 2) << " near ("
+         << judged.where << ") mm: "
+         << (model->rezoner || remesh_plan
+               ? "remesh earlier, or rezone by other rules"
+               : "rezone or remesh");
+    return text.str();
+  }
+
+
+
+  template <int dim>
+  std::string
+  Simulation<dim>::advice_against(const std::string &cause) const
+  {
+    // Shorter steps were tried: what they do not help against is the answer.
+    const std::string mesh = quality_if_low(quality);
+    for (const std::string of_mesh :
+         {"inverted corners", "loss of quality", "material or mesh", "Newton"})
+      if (cause == of_mesh && !mesh.empty())
+        return mesh;
+    return advice_for(cause);
+  }
+
+
+
+  template <int dim>
   void
   Simulation<dim>::rezone_if_due(const NodalVector &start)
   {
@@ -98,8 +131,12 @@ namespace alveolus
 #define INSTANTIATE(dim)                                                       \
   template Verdict Simulation<dim>::judge_quality(const QualitySummary<dim> &) \
     const;                                                                     \
-  template void Simulation<dim>::choose_next_step(const double);               \
-  template void Simulation<dim>::warn_of_quality();                            \
+  template void        Simulation<dim>::choose_next_step(const double);        \
+  template void        Simulation<dim>::warn_of_quality();                     \
+  template std::string Simulation<dim>::quality_if_low(                        \
+    const QualitySummary<dim> &) const;                                        \
+  template std::string Simulation<dim>::advice_against(const std::string &)    \
+    const;                                                                     \
   template void Simulation<dim>::rezone_if_due(const NodalVector &);
   INSTANTIATE(2)
   INSTANTIATE(3)

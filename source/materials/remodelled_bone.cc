@@ -276,7 +276,7 @@ namespace alveolus
         const double growth = effective ? root / std::pow(ratio, exponent) : 1.;
         const YieldStress yield{*hardening, yield_stress, alpha, scale, growth};
         const double      q = std::sqrt(1.5) * 2. * mu * norm;
-        if (q > yield.value(0.))
+        if (!response.no_flow && q > yield.value(0.))
           {
             const double dgamma = yield.radial_return(q, 3. * mu);
             const double slope  = yield.slope(dgamma);
@@ -360,7 +360,7 @@ namespace alveolus
           *hardening, yield_stress, alpha, scale, 1. / scale};
         const double q     = std::sqrt(1.5) * 2. * lame.mu * norm;
         double       theta = 1., dyad = 0.;
-        if (q > yield.value(0.))
+        if (!response.no_flow && q > yield.value(0.))
           {
             const double dalpha  = yield.radial_return(q, 3. * lame.mu);
             const double slope   = yield.slope(dalpha);
@@ -407,7 +407,8 @@ namespace alveolus
         if (alpha_offset >= 0)
           {
             const YieldStress yield{*hardening, yield_stress, alpha, ratio};
-            if (von_mises(from_mandel(stress)) > yield.value(0.))
+            if (!response.no_flow &&
+                von_mises(from_mandel(stress)) > yield.value(0.))
               {
                 const auto inverse    = power(-1.);
                 Mandel66   compliance = congruence(inverse);

@@ -134,7 +134,7 @@ namespace alveolus
                         "Number of cells relative to the default mesh of about "
                         "1000 cells; cell sizes go with its inverse square "
                         "root [-].",
-                        dealii::Patterns::Double(0.05, 1000.));
+                        dealii::Patterns::Double(0.01, 1000.));
       gmsh.declare_parameters(prm);
     }
 

@@ -265,7 +265,8 @@ namespace alveolus
     throw RunError("Transfer",
                    "a node moved out of the cells around it, even in " +
                      std::to_string(most_parts) + " parts",
-                   "rezone more often, so that the mesh moves less at once");
+                   "take smaller steps or rezone more often, so that the mesh "
+                   "moves less at once");
   }
 
   template class NodalTransfer<2>;

@@ -122,6 +122,15 @@ namespace alveolus
     void
     warn_of_quality();
     /**
+     * For a message: that the mesh is bad, where, and what helps; empty if it
+     * is not below `Monitor / Warn below quality`.
+     */
+    std::string
+    quality_if_low(const QualitySummary<dim> &judged) const;
+    /** What to do where no step is short enough, by the cause of that. */
+    std::string
+    advice_against(const std::string &cause) const;
+    /**
      * Rezone if the plan asks for it; else remember where the mesh was, since
      * rules count from the last rezoning.
      * @param start positions before the step

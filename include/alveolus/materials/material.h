@@ -44,6 +44,13 @@ namespace alveolus
      * tangent is only asked for k, l < 2 and for k = l = 2.
      */
     bool plane_strain = false;
+
+    /**
+     * Set by the caller: the energy of the record as it stands is wanted. A
+     * record beyond the yield surface, as transfer may leave it, would flow
+     * plastically even without deformation; with this it stays elastic.
+     */
+    bool no_flow = false;
   };
 
   /**
