@@ -48,8 +48,10 @@ namespace alveolus
                            "choose another `Output / Directory` or `--output`");
         }
     });
-    model =
-      std::make_unique<Model<dim>>(this->scene_object, first_mesh(), timer);
+    model = std::make_unique<Model<dim>>(this->scene_object,
+                                         first_mesh(),
+                                         timer,
+                                         first_positions());
     if (scene.remesher)
       {
         scene.remesher->initialize(model->mesh.names,
