@@ -21,7 +21,7 @@ namespace alveolus
                              const unsigned int               n_slots)
     : constraints(constraints)
     , n_slots(n_slots)
-    , umfpack(/*refine*/ true)
+    , umfpack(/*refine*/ false) // Newton's method does
   {
     matrix.reinit(pattern);
     right_hand_side.reinit(matrix.size());

@@ -21,7 +21,11 @@ namespace alveolus
   {
     make_state();
     if (positions)
-      state->configuration.set_positions(positions(state->configuration));
+      {
+        attached_at =
+          std::make_unique<NodalVector>(positions(state->configuration));
+        state->configuration.set_positions(*attached_at);
+      }
     // All problems at once, not one for each run
     Problems problems;
     for (auto &condition : scene->conditions)

@@ -45,6 +45,23 @@ namespace alveolus
 
 
   template <int dim>
+  std::function<NodalVector(const Configuration<dim> &)>
+  Simulation<dim>::first_positions() const
+  {
+    static const std::string name = "mesh/attached at";
+    if (!resumed || !resumed->has(name))
+      return {};
+    return [this](const Configuration<dim> &configuration) {
+      NodalVector x = configuration.make_vector();
+      PortableFields<dim>(configuration).load(*resumed, name, x);
+      x.update_ghost_values();
+      return x;
+    };
+  }
+
+
+
+  template <int dim>
   void
   Simulation<dim>::save_checkpoint()
   {
@@ -78,6 +95,8 @@ namespace alveolus
                          "set `Checkpoint / Write = false` with this remesher");
       }
 
+    if (model->attached_at)
+      portable->save(*model->attached_at, "mesh/attached at", blocks);
     portable->save(state.configuration.mesh_displacement(),
                    "state/mesh displacement",
                    blocks);
@@ -413,12 +432,14 @@ namespace alveolus
     return 0;
   }
 
-#define INSTANTIATE(dim)                                 \
-  template Mesh<dim> Simulation<dim>::first_mesh();      \
-  template void      Simulation<dim>::save_checkpoint(); \
-  template void      Simulation<dim>::restore();         \
-  template void      Simulation<dim>::open_files();      \
-  template int       Simulation<dim>::pause();
+#define INSTANTIATE(dim)                                          \
+  template Mesh<dim> Simulation<dim>::first_mesh();               \
+  template std::function<NodalVector(const Configuration<dim> &)> \
+                Simulation<dim>::first_positions() const;         \
+  template void Simulation<dim>::save_checkpoint();               \
+  template void Simulation<dim>::restore();                       \
+  template void Simulation<dim>::open_files();                    \
+  template int  Simulation<dim>::pause();
   INSTANTIATE(2)
   INSTANTIATE(3)
 #undef INSTANTIATE

@@ -77,6 +77,9 @@ namespace alveolus
     std::vector<RegionRemodelling> remodelling;
     /** All that a step changes. */
     std::unique_ptr<State<dim>> state;
+    /** The positions it was made with, which rules and maps remember, too [mm];
+     * null: those of the mesh. */
+    std::unique_ptr<NodalVector> attached_at;
     /** Loads, supports, contacts, layers. */
     typename MechanicsAssembler<dim>::Conditions conditions;
     /** Solves an increment. */

@@ -213,6 +213,9 @@ namespace alveolus
     /** Begin the files of the run, or go on with them. */
     void
     open_files();
+    /** Where a resumed model was attached, for its constructor; or empty. */
+    std::function<NodalVector(const Configuration<dim> &)>
+    first_positions() const;
     void
     save_checkpoint();
     /**
