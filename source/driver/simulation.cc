@@ -206,7 +206,14 @@ namespace alveolus
           catch (const RunError &error)
             {
               // It left the mesh as it was: the step itself is a result.
-              const std::string mesh = quality_if_low(model->quality());
+              std::string mesh = quality_if_low(model->quality());
+              if (mesh.empty() && rezoning_report.cut_back)
+                mesh =
+                  "the rules of `Rezoning` would have inverted elements, "
+                  "so that only " +
+                  number(rezoning_report.fraction, 2) +
+                  " of their motion was tried: remesh earlier, or rezone "
+                  "by other rules";
               conclude();
               throw RunError("t = " + number(model->state->time, 8) +
                                " T, after the step",
