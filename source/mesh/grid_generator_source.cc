@@ -166,6 +166,7 @@ namespace alveolus
                                   n_refinements,
                                   section + " / Refinements");
       map_vertices(*mesh.triangulation);
+      check_sizes(*mesh.triangulation);
 
       // Every process has all coarse cells, so every one sees all ids.
       std::set<unsigned int> boundary_ids, material_ids;
@@ -187,7 +188,18 @@ namespace alveolus
                                     section + " / Region names");
       if (dim == 2)
         name_curves(mesh);
-      mesh.triangulation->refine_global(n_refinements);
+      try
+        {
+          mesh.triangulation->refine_global(n_refinements);
+        }
+      catch (const dealii::ExceptionBase &)
+        {
+          // A manifold has no point there, e.g. at its centre.
+          throw InputError(section + " / Refinements",
+                           "the cells of '" + function + "' of '" + arguments +
+                             "' cannot be divided",
+                           "set it to 0, or change the arguments");
+        }
       name_points(mesh);
       mesh.description =
         function + "(" + arguments +
@@ -201,6 +213,24 @@ namespace alveolus
     std::string  arguments     = "0 : 1 : true";
     unsigned int n_refinements = 0;
     std::string map, boundary_names, boundary_pieces, region_names, point_names;
+
+    /** Refuse cells with corners on each other, which cannot be divided. */
+    void
+    check_sizes(const dealii::Triangulation<dim> &triangulation) const
+    {
+      for (const auto &cell : triangulation.cell_iterators_on_level(0))
+        if (!(cell->minimum_vertex_distance() > 1e-12 * cell->diameter()))
+          {
+            std::ostringstream place;
+            place << cell->center();
+            throw InputError(section + " / Arguments",
+                             "'" + function + "' of '" + arguments +
+                               "' makes a cell with two corners at one place, "
+                               "near (" +
+                               place.str() + ") mm",
+                             "change the arguments; a disc is hyper_ball");
+          }
+    }
 
     /**
      * Functions with arguments that are numbers of cells take memory for them
