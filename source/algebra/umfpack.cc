@@ -2,6 +2,9 @@
 #include <alveolus/algebra/umfpack.h>
 #include <alveolus/base/errors.h>
 
+#include <array>
+#include <umfpack.h>
+
 namespace alveolus
 {
   using namespace dealii;
@@ -10,8 +13,14 @@ namespace alveolus
                 "UMFPACK's long integers must be the compiler's");
 
   Umfpack::Umfpack(const bool refine)
+    : control(UMFPACK_CONTROL)
   {
     umfpack_dl_defaults(control.data());
+    // The pattern is that of a finite element matrix, symmetric with its
+    // diagonal. Left to itself, UMFPACK sometimes decides for columns and
+    // partial pivoting, which then loses all digits (Cook's membrane of 72 x 72
+    // cells: entries of the factors 4e13 times those of the matrix).
+    control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
     if (!refine)
       control[UMFPACK_IRSTEP] = 0.;
   }
@@ -36,13 +45,8 @@ namespace alveolus
       umfpack_dl_free_symbolic(&symbolic);
     std::array<double, UMFPACK_INFO> info{};
 
-    // The pattern is that of a finite element matrix, symmetric with its
-    // diagonal. Left to itself, UMFPACK sometimes decides for columns and
-    // partial pivoting, which then loses all digits (Cook's membrane of 72 x 72
-    // cells: entries of the factors 4e13 times those of the matrix).
-    control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
-    const long n              = static_cast<long>(matrix.size());
-    const int  status         = umfpack_dl_symbolic(n,
+    const long n      = static_cast<long>(matrix.size());
+    const int  status = umfpack_dl_symbolic(n,
                                            n,
                                            matrix.row_begin.data(),
                                            matrix.columns.data(),
@@ -50,7 +54,7 @@ namespace alveolus
                                            &symbolic,
                                            control.data(),
                                            info.data());
-    expected                  = info[UMFPACK_SYMMETRIC_LUNZ];
+    expected          = info[UMFPACK_SYMMETRIC_LUNZ];
     if (status != UMFPACK_OK)
       throw RunError("UMFPACK",
                      "symbolic analysis failed with status " +

@@ -199,10 +199,10 @@ namespace alveolus
                                  const std::string &list,
                                  const std::string &where)
     : n_nodes_per_edge(mesh_nodes.configuration.degree + 1)
+    , mesh_nodes(&mesh_nodes)
   {
-    const auto &configuration = mesh_nodes.configuration;
-    communicator              = configuration.communicator();
-    std::map<NodeId, unsigned int>         number;
+    const auto                    &configuration = mesh_nodes.configuration;
+    std::map<NodeId, unsigned int> number;
     std::map<unsigned int, unsigned int>   begins_at, ends_at;
     std::vector<Point<2>>                  initial;
     std::vector<Edge>                      found;
@@ -227,7 +227,6 @@ namespace alveolus
                     nodes.push_back(line[a].id);
                     dofs.push_back(line[a].dofs);
                     initial.push_back(line[a].place);
-                    owned.push_back(mesh_nodes.is_owned(line[a].id));
                   }
                 edge.nodes[a] = added.first->second;
               }
@@ -307,17 +306,7 @@ namespace alveolus
   std::vector<Point<2>>
   ContactOutline::get(const NodalVector &field) const
   {
-    // Each value comes from its owner, all others add zero: the sum is exact.
-    std::vector<double> sum(2 * nodes.size(), 0.);
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      if (owned[i])
-        for (unsigned int d = 0; d < 2; ++d)
-          sum[2 * i + d] = field(dofs[i][d]);
-    Utilities::MPI::sum(sum, communicator, sum);
-    std::vector<Point<2>> values(nodes.size());
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      values[i] = Point<2>(sum[2 * i], sum[2 * i + 1]);
-    return values;
+    return mesh_nodes->gather(field, nodes);
   }
 
 

@@ -343,11 +343,12 @@ namespace alveolus
         report.force_scale  = result.force_scale;
         if (!std::isfinite(norm))
           return repeat("the residual is not a finite number", "Newton");
-        const bool at_round_off = !lift && is_round_off(norm, first);
+        const bool small = norm <= parameters.tolerance * result.force_scale ||
+                           norm <= parameters.absolute_tolerance;
+        const bool at_round_off = !lift && !small && is_round_off(norm, first);
         if (at_round_off)
           report.round_off = round_off / scale;
-        if (!lift && (norm <= parameters.tolerance * result.force_scale ||
-                      norm <= parameters.absolute_tolerance || at_round_off))
+        if (!lift && (small || at_round_off))
           {
             expect_convergence(report.residuals, first); // learns from it
             try

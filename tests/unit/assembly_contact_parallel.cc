@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // mpirun=2
-// Contact on several processes: scene/contact-patch and scene/incisor; here only
-// what it refuses.
+// Contact on several processes: scene/contact-patch and scene/incisor; here
+// only what it refuses.
 #include <alveolus/assembly/contact_condition.h>
 #include <alveolus/base/errors.h>
 

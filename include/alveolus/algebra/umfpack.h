@@ -6,8 +6,7 @@
 
 #include <deal.II/lac/vector.h>
 
-#include <array>
-#include <umfpack.h>
+#include <vector>
 
 namespace alveolus
 {
@@ -67,7 +66,7 @@ namespace alveolus
     void
     analyse(const CsrMatrix &matrix);
 
-    std::array<double, UMFPACK_CONTROL> control;
+    std::vector<double> control; ///< in the order of UMFPACK
 
     const CsrMatrix *factorised = nullptr;
     double           expected   = 0.; ///< entries of both factors

@@ -96,7 +96,7 @@ namespace alveolus
     ContactOutline() = default;
 
     /**
-     * (Collective.)
+     * (Collective.) @p mesh_nodes must outlive this object.
      * @param list names of boundary pieces, separated by commas
      * @throws InputError for an unknown name, or where more than two of the
      *         lines meet in a point
@@ -136,8 +136,7 @@ namespace alveolus
     unsigned int n_nodes_per_edge = 2; ///< degree + 1
 
   private:
-    MPI_Comm          communicator = MPI_COMM_SELF;
-    std::vector<bool> owned; ///< of the nodes, by this process
+    const Nodes<2> *mesh_nodes = nullptr; ///< that know the owners
   };
 } // namespace alveolus
 
