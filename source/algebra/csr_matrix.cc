@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/algebra/csr_matrix.h>
+#include <alveolus/base/errors.h>
+
+#include <limits>
 
 namespace alveolus
 {
@@ -7,6 +10,13 @@ namespace alveolus
   CsrMatrix::reinit(const dealii::DynamicSparsityPattern &pattern)
   {
     const std::size_t n = pattern.n_rows();
+    if (pattern.n_nonzero_elements() + n >
+        static_cast<std::size_t>(std::numeric_limits<int>::max()))
+      throw RunError("UMFPACK",
+                     "the matrix has " +
+                       std::to_string(pattern.n_nonzero_elements()) +
+                       " entries, more than it can count",
+                     "set `Solver / Linear solver = MUMPS`");
     row_begin.assign(1, 0);
     row_begin.reserve(n + 1);
     columns.clear();
@@ -21,13 +31,13 @@ namespace alveolus
               {
                 diagonal = true;
                 if (j > i)
-                  columns.push_back(static_cast<long>(i));
+                  columns.push_back(static_cast<int>(i));
               }
-            columns.push_back(static_cast<long>(j));
+            columns.push_back(static_cast<int>(j));
           }
         if (!diagonal)
-          columns.push_back(static_cast<long>(i));
-        row_begin.push_back(static_cast<long>(columns.size()));
+          columns.push_back(static_cast<int>(i));
+        row_begin.push_back(static_cast<int>(columns.size()));
       }
     columns.shrink_to_fit();
     values.assign(columns.size(), 0.);

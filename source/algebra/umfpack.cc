@@ -9,13 +9,10 @@ namespace alveolus
 {
   using namespace dealii;
 
-  static_assert(sizeof(SuiteSparse_long) == sizeof(long),
-                "UMFPACK's long integers must be the compiler's");
-
   Umfpack::Umfpack(const bool refine)
     : control(UMFPACK_CONTROL)
   {
-    umfpack_dl_defaults(control.data());
+    umfpack_di_defaults(control.data());
     // The pattern is that of a finite element matrix, symmetric with its
     // diagonal. Left to itself, UMFPACK sometimes decides for columns and
     // partial pivoting, which then loses all digits (Cook's membrane of 72 x 72
@@ -30,9 +27,9 @@ namespace alveolus
   Umfpack::~Umfpack()
   {
     if (numeric != nullptr)
-      umfpack_dl_free_numeric(&numeric);
+      umfpack_di_free_numeric(&numeric);
     if (symbolic != nullptr)
-      umfpack_dl_free_symbolic(&symbolic);
+      umfpack_di_free_symbolic(&symbolic);
   }
 
 
@@ -42,11 +39,11 @@ namespace alveolus
   {
     factorised = &matrix;
     if (symbolic != nullptr)
-      umfpack_dl_free_symbolic(&symbolic);
+      umfpack_di_free_symbolic(&symbolic);
     std::array<double, UMFPACK_INFO> info{};
 
-    const long n      = static_cast<long>(matrix.size());
-    const int  status = umfpack_dl_symbolic(n,
+    const int n      = static_cast<int>(matrix.size());
+    const int status = umfpack_di_symbolic(n,
                                            n,
                                            matrix.row_begin.data(),
                                            matrix.columns.data(),
@@ -54,7 +51,7 @@ namespace alveolus
                                            &symbolic,
                                            control.data(),
                                            info.data());
-    expected          = info[UMFPACK_SYMMETRIC_LUNZ];
+    expected         = info[UMFPACK_SYMMETRIC_LUNZ];
     if (status != UMFPACK_OK)
       throw RunError("UMFPACK",
                      "symbolic analysis failed with status " +
@@ -81,10 +78,10 @@ namespace alveolus
     if (factorised != &matrix)
       analyse(matrix);
     if (numeric != nullptr)
-      umfpack_dl_free_numeric(&numeric);
+      umfpack_di_free_numeric(&numeric);
     std::array<double, UMFPACK_INFO> info{};
 
-    const int status            = umfpack_dl_numeric(matrix.row_begin.data(),
+    const int status            = umfpack_di_numeric(matrix.row_begin.data(),
                                           matrix.columns.data(),
                                           matrix.values.data(),
                                           symbolic,
@@ -98,7 +95,10 @@ namespace alveolus
                        ? "the matrix is singular"
                        : "factorisation failed with status " +
                            std::to_string(status),
-                     "check that the boundary conditions hold every body");
+                     status == UMFPACK_ERROR_out_of_memory
+                       ? "out of memory, or factors beyond the 16 GB that it "
+                         "can count: try `Solver / Linear solver = MUMPS`"
+                       : "check that the boundary conditions hold every body");
   }
 
 
@@ -107,7 +107,7 @@ namespace alveolus
   Umfpack::solve(Vector<double> &x, const Vector<double> &b) const
   {
     // Our rows are UMFPACK's columns, so the transposed system is ours.
-    umfpack_dl_solve(UMFPACK_At,
+    umfpack_di_solve(UMFPACK_At,
                      factorised->row_begin.data(),
                      factorised->columns.data(),
                      factorised->values.data(),

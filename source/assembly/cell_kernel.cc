@@ -32,6 +32,7 @@ namespace alveolus
     : configuration(configuration)
     , geometry(geometry)
     , points(geometry.n_points)
+    , pressure_shapes(geometry.pressure_shapes)
   {
     for (unsigned int a = 0; a < geometry.n_nodes; ++a)
       for (unsigned int i = 0; i < dim; ++i)
@@ -44,13 +45,7 @@ namespace alveolus
         point.response.plane_strain = (dim == 2);
       }
 
-    const FE_DGP<dim>  pressure_fe(configuration.degree - 1);
-    const unsigned int n = pressure_fe.n_dofs_per_cell();
-    pressure_shapes.assign(n, std::vector<double>(points.size()));
-    for (unsigned int m = 0; m < n; ++m)
-      for (unsigned int q = 0; q < points.size(); ++q)
-        pressure_shapes[m][q] =
-          pressure_fe.shape_value(m, geometry.quadrature.point(q));
+    const unsigned int n = pressure_shapes.size();
     mass_inverse.reinit(n, n);
     coefficients.resize(n);
     coefficients_pressure.resize(n);

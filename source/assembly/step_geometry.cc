@@ -3,17 +3,37 @@
 #include <alveolus/base/errors.h>
 
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_dgp.h>
 #include <deal.II/fe/fe_q.h>
 
 namespace alveolus
 {
   using namespace dealii;
 
+  namespace
+  {
+    template <int dim>
+    std::vector<std::vector<double>>
+    shape_values(const FiniteElement<dim> &fe, const Quadrature<dim> &points)
+    {
+      std::vector<std::vector<double>> values(
+        fe.n_dofs_per_cell(), std::vector<double>(points.size()));
+      for (unsigned int m = 0; m < values.size(); ++m)
+        for (unsigned int q = 0; q < points.size(); ++q)
+          values[m][q] = fe.shape_value(m, points.point(q));
+      return values;
+    }
+  } // namespace
+
+
+
   template <int dim>
   StepGeometry<dim>::StepGeometry(const Configuration<dim> &configuration)
     : quadrature(QGauss<dim>(configuration.degree + 1))
     , n_points(quadrature.size())
     , n_nodes(configuration.fe.n_dofs_per_cell() / dim)
+    , pressure_shapes(
+        shape_values(FE_DGP<dim>(configuration.degree - 1), quadrature))
     , configuration(configuration)
     , slot(configuration.mesh.triangulation->n_active_cells(),
            numbers::invalid_unsigned_int)

@@ -138,7 +138,7 @@ namespace
     for (std::size_t i = 0; i < matrix.size(); ++i)
       {
         double sum = -b[i];
-        for (long k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
+        for (int k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
           sum += matrix.values[k] * x[matrix.columns[k]];
         error += std::abs(sum);
       }
@@ -147,13 +147,13 @@ namespace
     // deal.II's own wrapper, which analyses the pattern each time
     DynamicSparsityPattern entries(matrix.size());
     for (std::size_t i = 0; i < matrix.size(); ++i)
-      for (long k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
+      for (int k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
         entries.add(i, matrix.columns[k]);
     SparsityPattern pattern;
     pattern.copy_from(entries);
     SparseMatrix<double> copy(pattern);
     for (std::size_t i = 0; i < matrix.size(); ++i)
-      for (long k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
+      for (int k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
         copy.set(i, matrix.columns[k], matrix.values[k]);
     const double with_analysis = median_seconds([&]() {
       SparseDirectUMFPACK direct;

@@ -15,8 +15,9 @@ commands.txt: lines `CLASS | COMMAND | exit=N options`. Classes:
 
     short    run by this test
     slow     run with those of class short by class slow, a test of the label slow
-    fresh    installs, builds or tests everything: run on a fresh system
-    other    run by another test or by a person; the third column says which
+    clone    builds, tests or measures everything: run by class clone, a test of the
+             label slow, in a copy of the sources that was never built. Where the
+             command itself takes hours the third column is `as SHORTER COMMAND`.
     pattern  has placeholders: no command
 """
 import glob
@@ -85,7 +86,7 @@ def classes(name):
         if not line or line.startswith("#"):
             continue
         parts = [part.strip() for part in line.split(" | ")]
-        if len(parts) < 2 or parts[0] not in ("short", "slow", "fresh", "other", "pattern"):
+        if len(parts) < 2 or parts[0] not in ("short", "slow", "clone", "pattern"):
             sys.exit(f"{name}, line {number}: not CLASS | COMMAND | options")
         table[plain(parts[1])] = (parts[0], parts[2] if len(parts) > 2 else "")
     return table
@@ -114,6 +115,15 @@ def workplace(source, build, work):
     os.chmod(wrapper, 0o755)
 
 
+def copy_of_sources(source, work):
+    """All of the source folder but what was built or computed there."""
+    shutil.rmtree(work, ignore_errors=True)
+    shutil.copytree(source, work, symlinks=True,
+                    ignore=lambda folder, names: [
+                        name for name in names if folder == source and
+                        (name in (".git", "output") or name.startswith("build"))])
+
+
 def main():
     source, build, work = map(os.path.abspath, sys.argv[1:4])
     wanted = sys.argv[4] if len(sys.argv) > 4 else "short"
@@ -136,7 +146,10 @@ def main():
         failures.append("no document has a command")
 
     # What a slow command needs, a short one before it may make
-    workplace(source, build, work)
+    if wanted == "clone":
+        copy_of_sources(source, work)
+    else:
+        workplace(source, build, work)
     n_run = 0
     for command in dict.fromkeys(found):
         kind, options = listed.get(plain(command), ("", ""))
@@ -147,15 +160,21 @@ def main():
         expected = re.search(r"exit=(\d+)", options)
         expected = int(expected.group(1)) if expected else 0
         more = re.sub(r"exit=\d+", "", options).strip()
+        shown = command
+        if kind == "clone" and more:
+            if not more.startswith("as "):
+                sys.exit(f"commands.txt: neither `as` nor `exit`: {options}")
+            command, more = more[3:], ""
+            shown += f" as {command}"
         environment = dict(os.environ, ALVEOLUS_SHORT=more)
         # Debian's python3 first: it has the modules
         environment["PATH"] = ":".join([os.path.join(work, "build"), "/usr/bin", environment["PATH"]])
         run = subprocess.run(["bash", "-c", command], cwd=work, env=environment,
                              capture_output=True, text=True, check=False)
         n_run += 1
-        print(f"{'ok' if run.returncode == expected else 'FAILED'}: {command}", flush=True)
+        print(f"{'ok' if run.returncode == expected else 'FAILED'}: {shown}", flush=True)
         if run.returncode != expected:
-            failures.append(f"exit code {run.returncode}, not {expected}: {command}\n"
+            failures.append(f"exit code {run.returncode}, not {expected}: {shown}\n"
                             + (run.stdout + run.stderr)[-1500:])
     print(f"{len(dict.fromkeys(found))} commands in {len(documents)} documents, {n_run} run as {wanted}")
     for failure in failures:

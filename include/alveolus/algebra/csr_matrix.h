@@ -17,7 +17,11 @@ namespace alveolus
   class CsrMatrix
   {
   public:
-    /** Take a pattern, add what is missing of the diagonal, set zero values. */
+    /**
+     * Take a pattern, add what is missing of the diagonal, set zero values.
+     * Indices are short ones: a third of the memory of a matrix is saved and
+     * some of the factors'. @throws RunError beyond 2^31 entries
+     */
     void
     reinit(const dealii::DynamicSparsityPattern &pattern);
 
@@ -34,9 +38,8 @@ namespace alveolus
     {
       const auto begin = columns.begin() + row_begin[row];
       const auto end   = columns.begin() + row_begin[row + 1];
-      const auto found =
-        std::lower_bound(begin, end, static_cast<long>(column));
-      return found != end && *found == static_cast<long>(column)
+      const auto found = std::lower_bound(begin, end, static_cast<int>(column));
+      return found != end && *found == static_cast<int>(column)
                ? found - columns.begin()
                : values.size();
     }
@@ -45,12 +48,12 @@ namespace alveolus
     std::size_t
     memory_consumption() const
     {
-      return (row_begin.capacity() + columns.capacity()) * sizeof(long) +
+      return (row_begin.capacity() + columns.capacity()) * sizeof(int) +
              values.capacity() * sizeof(double);
     }
 
-    std::vector<long>   row_begin; ///< of each row, and the end
-    std::vector<long>   columns;   ///< column of each entry, ascending in a row
+    std::vector<int>    row_begin; ///< of each row, and the end
+    std::vector<int>    columns;   ///< column of each entry, ascending in a row
     std::vector<double> values;    ///< value of each entry
   };
 } // namespace alveolus

@@ -6,7 +6,6 @@
 #include <alveolus/materials/material.h>
 #include <alveolus/state/history_store.h>
 
-#include <deal.II/fe/fe_dgp.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
@@ -138,11 +137,10 @@ namespace alveolus
     bool                      mean_dilatation = false;
     const double             *geometry_weight = nullptr; ///< of the cell
     std::vector<Point>        points;
-    /** FE_DGP(degree-1) shape values, [function][point]. */
-    std::vector<std::vector<double>> pressure_shapes;
-    dealii::FullMatrix<double>       mass_inverse;
-    std::vector<double>              coefficients;
-    std::vector<double>              coefficients_pressure;
+    const std::vector<std::vector<double>> &pressure_shapes; ///< of geometry
+    dealii::FullMatrix<double>              mass_inverse;
+    std::vector<double>                     coefficients;
+    std::vector<double>                     coefficients_pressure;
     /**
      * Work space of the tangent: d force (node a, component i) by d u (node b,
      * component k) at [((b * dim + k) * dim + i) * n_nodes + a].

@@ -54,6 +54,12 @@ namespace alveolus
     const dealii::Quadrature<dim> quadrature; ///< Gauss points of the unit cell
     const unsigned int            n_points;   ///< quadrature points of a cell
     const unsigned int            n_nodes; ///< scalar shape functions of a cell
+    /**
+     * Values of FE_DGP(degree - 1), [function][point]: what theta and p of mean
+     * dilatation are made of. Here because the element is costly to make, and a
+     * kernel is made for each assembly.
+     */
+    const std::vector<std::vector<double>> pressure_shapes;
 
   private:
     const Configuration<dim>           &configuration;
