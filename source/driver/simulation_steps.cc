@@ -103,31 +103,6 @@ namespace alveolus
     return advice_for(cause);
   }
 
-
-
-  template <int dim>
-  void
-  Simulation<dim>::rezone_if_due(const NodalVector &start)
-  {
-    swept_fraction                = 0.;
-    const RezoningPlan &plan      = scene.rezoning_plan;
-    double              remaining = 1.;
-    if (plan.asks_for_quality())
-      remaining = model->quality().smallest_scaled_jacobian;
-    if (!plan.due(totals.steps, remaining))
-      {
-        ++totals.skipped_rezonings;
-        if (!rezoning_start)
-          {
-            rezoning_start = std::make_unique<NodalVector>(start);
-            rezoning_start->update_ghost_values();
-          }
-        return;
-      }
-    rezone(*model, rezoning_start ? *rezoning_start : start, true);
-    rezoning_start.reset();
-  }
-
 #define INSTANTIATE(dim)                                                       \
   template Verdict Simulation<dim>::judge_quality(const QualitySummary<dim> &) \
     const;                                                                     \
@@ -136,8 +111,7 @@ namespace alveolus
   template std::string Simulation<dim>::quality_if_low(                        \
     const QualitySummary<dim> &) const;                                        \
   template std::string Simulation<dim>::advice_against(const std::string &)    \
-    const;                                                                     \
-  template void Simulation<dim>::rezone_if_due(const NodalVector &);
+    const;
   INSTANTIATE(2)
   INSTANTIATE(3)
 #undef INSTANTIATE
