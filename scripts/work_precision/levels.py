@@ -82,7 +82,7 @@ def incisor_3d():
     study.other("level", "fast", study.scene, end + ["Accuracy=fast"])
     study.other("level", "balanced", study.scene, end + ["Accuracy=balanced"])
     meshes = {d: ([f"Mesh/incisor/Mesh density={d}"], float(d) ** (-1 / 3))
-              for d in ("0.06", "0.12", "0.25", "0.5")}
+              for d in ("0.06", "0.12", "0.25", "0.5", "1", "2")}
     return series(study, "Incisor in 3D: levels", meshes, 2.0, ("1", "0.5", "0.25"), [],
                   ("0.5", "0.12"))
 

@@ -8,6 +8,25 @@ namespace alveolus
   using dealii::SymmetricTensor;
   using dealii::Tensor;
 
+  namespace
+  {
+    using Matrix3 = std::array<std::array<double, 3>, 3>;
+
+    /** All entries: products by SymmetricTensor's indices take five times as
+     * long. */
+    inline Matrix3
+    matrix(const SymmetricTensor<2, 3> &A)
+    {
+      const auto x = [&A](const unsigned int i) {
+        return A.access_raw_entry(i);
+      };
+      return {
+        {{{x(0), x(3), x(4)}}, {{x(3), x(1), x(5)}}, {{x(4), x(5), x(2)}}}};
+    }
+  } // namespace
+
+
+
   std::array<std::array<Tensor<1, 3>, 3>, 3>
   polar_spin(const SymmetricTensor<2, 3> &V)
   {
@@ -71,19 +90,21 @@ namespace alveolus
                     const SymmetricTensor<2, 3> &B,
                     const SymmetricTensor<2, 3> &C)
   {
-    double AB[3][3];
+    const Matrix3 a = matrix(A), b = matrix(B), c = matrix(C);
+    Matrix3       ab, abc;
     for (unsigned int i = 0; i < 3; ++i)
       for (unsigned int j = 0; j < 3; ++j)
-        AB[i][j] = A[i][0] * B[0][j] + A[i][1] * B[1][j] + A[i][2] * B[2][j];
-    const auto entry = [&](const unsigned int i, const unsigned int j) {
-      return AB[i][0] * C[0][j] + AB[i][1] * C[1][j] + AB[i][2] * C[2][j];
-    };
+        ab[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+    for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int j = 0; j < 3; ++j)
+        abc[i][j] =
+          ab[i][0] * c[0][j] + ab[i][1] * c[1][j] + ab[i][2] * c[2][j];
     SymmetricTensor<2, 3> result;
     for (unsigned int i = 0; i < 3; ++i)
       {
-        result[i][i] = entry(i, i);
+        result.access_raw_entry(i) = abc[i][i];
         for (unsigned int j = i + 1; j < 3; ++j)
-          result[i][j] = 0.5 * (entry(i, j) + entry(j, i));
+          result.access_raw_entry(i + j + 2) = 0.5 * (abc[i][j] + abc[j][i]);
       }
     return result;
   }
