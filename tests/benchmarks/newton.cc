@@ -36,23 +36,30 @@ namespace
     return now.tv_sec + 1e-9 * now.tv_nsec;
   }
 
-  /** Median of at least 7 repetitions, of more if they are short. */
-  double
-  median_seconds(const std::function<void()> &action)
+  /**
+   * Medians of at least 7 repetitions, of more if they are short. The actions
+   * take turns, so that a machine that is slow for a second is slow for all.
+   */
+  std::vector<double>
+  median_seconds(const std::vector<std::function<void()>> &actions)
   {
-    std::vector<double> seconds;
-    double              total = 0.;
-    while (seconds.size() < 7 || (total < 0.3 && seconds.size() < 101))
+    std::vector<std::vector<double>> seconds(actions.size());
+    double                           total = 0.;
+    while (seconds[0].size() < 7 || (total < 2. && seconds[0].size() < 101))
+      for (unsigned int i = 0; i < actions.size(); ++i)
+        {
+          const double start = processor_seconds();
+          actions[i]();
+          seconds[i].push_back(processor_seconds() - start);
+          total += seconds[i].back();
+        }
+    std::vector<double> medians;
+    for (auto &of : seconds)
       {
-        const double start = processor_seconds();
-        action();
-        seconds.push_back(processor_seconds() - start);
-        total += seconds.back();
+        std::nth_element(of.begin(), of.begin() + of.size() / 2, of.end());
+        medians.push_back(of[of.size() / 2]);
       }
-    std::nth_element(seconds.begin(),
-                     seconds.begin() + seconds.size() / 2,
-                     seconds.end());
-    return seconds[seconds.size() / 2];
+    return medians;
   }
 
   int
@@ -113,36 +120,11 @@ namespace
     NodalVector residual = state.configuration.make_vector();
     NodalVector correction(residual);
 
-    const double geometry =
-      median_seconds([&]() { assembler.begin_step(interval); });
-    const double forces = median_seconds(
-      [&]() { assembler.assemble(du, AssemblyTarget{residual}); });
-    const double assembly = median_seconds([&]() {
-      assembler.assemble(du, AssemblyTarget{residual, system.get()});
-    });
-    const double solution =
-      median_seconds([&]() { system->solve(correction, residual); });
-
+    assembler.assemble(du, AssemblyTarget{residual, system.get()});
     const CsrMatrix &matrix = dynamic_cast<const SerialSystem &>(*system).csr();
     Umfpack          umfpack;
     umfpack.factorize(matrix);
-    const double factorisation =
-      median_seconds([&]() { umfpack.factorize(matrix); });
     Vector<double> x(matrix.size()), b(matrix.size());
-    for (unsigned int i = 0; i < b.size(); ++i)
-      b[i] = residual.local_element(i);
-    const double substitution = median_seconds([&]() { umfpack.solve(x, b); });
-
-    // How well the factors alone solve the system
-    double error = 0.;
-    for (std::size_t i = 0; i < matrix.size(); ++i)
-      {
-        double sum = -b[i];
-        for (int k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
-          sum += matrix.values[k] * x[matrix.columns[k]];
-        error += std::abs(sum);
-      }
-    error /= b.l1_norm();
 
     // deal.II's own wrapper, which analyses the pattern each time
     DynamicSparsityPattern entries(matrix.size());
@@ -155,10 +137,33 @@ namespace
     for (std::size_t i = 0; i < matrix.size(); ++i)
       for (int k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
         copy.set(i, matrix.columns[k], matrix.values[k]);
-    const double with_analysis = median_seconds([&]() {
-      SparseDirectUMFPACK direct;
-      direct.factorize(copy);
-    });
+    const std::vector<double> medians = median_seconds(
+      {[&]() { assembler.begin_step(interval); },
+       [&]() { assembler.assemble(du, AssemblyTarget{residual}); },
+       [&]() {
+         assembler.assemble(du, AssemblyTarget{residual, system.get()});
+       },
+       [&]() { system->solve(correction, residual); },
+       [&]() { umfpack.factorize(matrix); },
+       [&]() { umfpack.solve(x, b); },
+       [&]() {
+         SparseDirectUMFPACK direct;
+         direct.factorize(copy);
+       }});
+
+    // How well the factors alone solve the system
+    for (unsigned int i = 0; i < b.size(); ++i)
+      b[i] = residual.local_element(i);
+    umfpack.solve(x, b);
+    double error = 0.;
+    for (std::size_t i = 0; i < matrix.size(); ++i)
+      {
+        double sum = -b[i];
+        for (int k = matrix.row_begin[i]; k < matrix.row_begin[i + 1]; ++k)
+          sum += matrix.values[k] * x[matrix.columns[k]];
+        error += std::abs(sum);
+      }
+    error /= b.l1_norm();
 
     const double cells = model.mesh.triangulation->n_active_cells();
     std::cout << "{\"cells\": " << cells
@@ -166,13 +171,14 @@ namespace
               << ", \"unknowns\": " << matrix.size()
               << ", \"nonzeros\": " << matrix.values.size()
               << ", \"points\": " << cells * state.history.n_points
-              << ", \"shapes\": " << geometry << ", \"forces\": " << forces
-              << ", \"assembly\": " << assembly
-              << ", \"solution\": " << solution
-              << ", \"factorisation\": " << factorisation
-              << ", \"substitution\": " << substitution
+              << ", \"shapes\": " << medians[0]
+              << ", \"forces\": " << medians[1]
+              << ", \"assembly\": " << medians[2]
+              << ", \"solution\": " << medians[3]
+              << ", \"factorisation\": " << medians[4]
+              << ", \"substitution\": " << medians[5]
               << ", \"residual of the factors\": " << error
-              << ", \"deal.II factorisation\": " << with_analysis
+              << ", \"deal.II factorisation\": " << medians[6]
               << ", \"history bytes per cell\": "
               << state.history.memory_consumption() / cells
               << ", \"matrix bytes per cell\": "
