@@ -2,6 +2,8 @@
 #include <alveolus/transfer/sub_cell_overlap.h>
 #include <alveolus/transfer/sub_cell_shapes.h>
 
+#include <deal.II/base/parallel.h>
+
 #include <algorithm>
 
 namespace alveolus
@@ -88,67 +90,88 @@ namespace alveolus
                                const HistoryStore<dim> &new_store,
                                const NodalVector       &x) const
   {
-    const SubCellShapes<dim>             shapes(cells.nodes, cells.breaks());
-    std::vector<ConvexPiece<dim>>        pieces;
-    std::vector<unsigned int>            point, found;
-    typename CellNodes<dim>::NodeTensors position;
-    std::vector<OverlapTarget<dim>>      result;
-    for (const unsigned int c : cells.owned_cells())
-      {
-        const Region      &region = regions[new_store.region(c)];
-        const unsigned int first  = result.size();
-        for (unsigned int q = 0; q < old.n_points; ++q)
+    // Cells are independent of each other: any order gives the same result.
+    const SubCellShapes<dim>        shapes(cells.nodes, cells.breaks());
+    const auto                     &owned = cells.owned_cells();
+    std::vector<OverlapTarget<dim>> result(owned.size() * old.n_points);
+    parallel::apply_to_subranges(
+      0U,
+      static_cast<unsigned int>(owned.size()),
+      [&](const unsigned int begin, const unsigned int end) {
+        std::vector<ConvexPiece<dim>>        pieces;
+        std::vector<unsigned int>            point, found;
+        typename CellNodes<dim>::NodeTensors position;
+        for (unsigned int i = begin; i < end; ++i)
           {
-            result.emplace_back();
-            result.back().cell  = c;
-            result.back().point = q;
-          }
-        cells.nodes.gather(x, c, position);
-        shapes.pieces(position, pieces, point);
-        for (unsigned int i = 0; i < pieces.size(); ++i)
-          {
-            OverlapTarget<dim> &target = result[first + point[i]];
-            const double        own    = moments(pieces[i]).volume;
-            target.volume += own;
-            region.tree->meeting(box_of(pieces[i]), found);
-            for (const unsigned int k : found)
+            const unsigned int  c      = owned[i];
+            const Region       &region = regions[new_store.region(c)];
+            OverlapTarget<dim> *first  = result.data() + i * old.n_points;
+            for (unsigned int q = 0; q < old.n_points; ++q)
               {
-                const unsigned int s = region.sub_cell[k];
-                const auto common    = overlap(pieces[i], region.pieces[k]);
-                if (common.volume > sliver * std::min(own, volumes[s]))
-                  target.shares.push_back(
-                    {s,
-                     common.volume,
-                     common.first +
-                       common.volume * (pieces[i].corners[0] - centroids[s])});
+                first[q].cell  = c;
+                first[q].point = q;
               }
+            cells.nodes.gather(x, c, position);
+            shapes.pieces(position, pieces, point);
+            for (unsigned int k = 0; k < pieces.size(); ++k)
+              add_shares(region, pieces[k], found, first[point[k]]);
+            for (unsigned int q = 0; q < old.n_points; ++q)
+              merge_shares(first[q]);
           }
+      },
+      16);
+    return result;
+  }
 
-        // One share for each old sub-cell, in their order.
-        for (unsigned int t = first; t < result.size(); ++t)
+
+
+  template <int dim>
+  void
+  SubCellOverlap<dim>::add_shares(const Region              &region,
+                                  const ConvexPiece<dim>    &piece,
+                                  std::vector<unsigned int> &found,
+                                  OverlapTarget<dim>        &target) const
+  {
+    const double own = moments(piece).volume;
+    target.volume += own;
+    region.tree->meeting(box_of(piece), found);
+    for (const unsigned int k : found)
+      {
+        const unsigned int s      = region.sub_cell[k];
+        const auto         common = overlap(piece, region.pieces[k]);
+        if (common.volume > sliver * std::min(own, volumes[s]))
+          target.shares.push_back(
+            {s,
+             common.volume,
+             common.first + common.volume * (piece.corners[0] - centroids[s])});
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  SubCellOverlap<dim>::merge_shares(OverlapTarget<dim> &target)
+  {
+    auto &shares = target.shares;
+    std::stable_sort(shares.begin(),
+                     shares.end(),
+                     [](const Share<dim> &a, const Share<dim> &b) {
+                       return a.old < b.old;
+                     });
+    std::vector<Share<dim>> merged;
+    for (const Share<dim> &share : shares)
+      {
+        target.covered += share.volume;
+        if (merged.empty() || merged.back().old != share.old)
+          merged.push_back(share);
+        else
           {
-            auto &shares = result[t].shares;
-            std::stable_sort(shares.begin(),
-                             shares.end(),
-                             [](const Share<dim> &a, const Share<dim> &b) {
-                               return a.old < b.old;
-                             });
-            std::vector<Share<dim>> merged;
-            for (const Share<dim> &share : shares)
-              {
-                result[t].covered += share.volume;
-                if (merged.empty() || merged.back().old != share.old)
-                  merged.push_back(share);
-                else
-                  {
-                    merged.back().volume += share.volume;
-                    merged.back().first += share.first;
-                  }
-              }
-            shares = std::move(merged);
+            merged.back().volume += share.volume;
+            merged.back().first += share.first;
           }
       }
-    return result;
+    shares = std::move(merged);
   }
 
   template class SubCellOverlap<2>;

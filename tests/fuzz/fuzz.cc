@@ -103,9 +103,10 @@ namespace alveolus::fuzz
           dup2(file, 1);
           dup2(file, 2);
           close(file);
-          int         argc      = 1;
-          std::string name      = "fuzz";
-          char       *arguments = name.data(), **argv = &arguments;
+          int         argc        = 1;
+          std::string name        = "fuzz";
+          char       *arguments[] = {name.data(), nullptr};
+          char      **argv        = arguments;
           setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
           int code = 0;
           leaks_count(false); // MPI's own

@@ -93,6 +93,16 @@ namespace alveolus
       std::unique_ptr<BoxTree<dim>> tree;
     };
 
+    /** Overlaps of one piece of a new sub-cell; @p found is work space. */
+    void
+    add_shares(const Region              &region,
+               const ConvexPiece<dim>    &piece,
+               std::vector<unsigned int> &found,
+               OverlapTarget<dim>        &target) const;
+    /** One share for each old sub-cell, in their order. */
+    static void
+    merge_shares(OverlapTarget<dim> &target);
+
     const HistoryPicture<dim>      &old;
     std::vector<Region>             regions;
     std::vector<double>             volumes;
