@@ -74,15 +74,18 @@ def own_outline():
 
 
 def incisor_3d():
-    end = ["Output/Fields=false"]
-    study = Study("levels-incisor-3d", "", "incisor-3d", 2, end,
-                  [Quantity("edge", "mm", "edge: displacement"),
+    # The force alone: later the couple turns the tooth back to no rotation
+    end = ["Output/Fields=false", "Time/End=1"]
+    study = Study("levels-incisor-3d", "", "incisor-3d", 1, end,
+                  [Quantity("edge", "mm", "edge: displacement x"),
                    Quantity("rotation", "degree", "tooth: rotation z"),
                    Quantity("stored energy", "mJ", "stored energy")])
     study.other("level", "fast", study.scene, end + ["Accuracy=fast"])
     study.other("level", "balanced", study.scene, end + ["Accuracy=balanced"])
     meshes = {d: ([f"Mesh/incisor/Mesh density={d}"], float(d) ** (-1 / 3))
               for d in ("0.06", "0.12", "0.25", "0.5", "1", "2")}
+    study.knob("degree 2", {d: ["Mesh/Degree=2"] + meshes[d][0] + steps("0.5")
+                            for d in ("0.06", "0.12", "0.25")})
     return series(study, "Incisor in 3D: levels", meshes, 2.0, ("1", "0.5", "0.25"), [],
                   ("0.5", "0.12"))
 
