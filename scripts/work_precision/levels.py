@@ -74,8 +74,8 @@ def own_outline():
 
 
 def incisor_3d():
-    # The force alone: later the couple turns the tooth back to no rotation
-    end = ["Output/Fields=false", "Time/End=1"]
+    # Under the force alone: later the couple turns the tooth back to no rotation
+    end = ["Output/Fields=false"]
     study = Study("levels-incisor-3d", "", "incisor-3d", 1, end,
                   [Quantity("edge", "mm", "edge: displacement x"),
                    Quantity("rotation", "degree", "tooth: rotation z"),
@@ -84,8 +84,8 @@ def incisor_3d():
     study.other("level", "balanced", study.scene, end + ["Accuracy=balanced"])
     meshes = {d: ([f"Mesh/incisor/Mesh density={d}"], float(d) ** (-1 / 3))
               for d in ("0.06", "0.12", "0.25", "0.5", "1", "2")}
-    study.knob("degree 2", {d: ["Mesh/Degree=2"] + meshes[d][0] + steps("0.5")
-                            for d in ("0.06", "0.12", "0.25")})
+    study.knob("degree 2", {d: ["Mesh/Degree=2", "Time/End=1"] + meshes[d][0] + steps("0.5")
+                            for d in ("0.06", "0.12")})
     return series(study, "Incisor in 3D: levels", meshes, 2.0, ("1", "0.5", "0.25"), [],
                   ("0.5", "0.12"))
 
