@@ -19,7 +19,7 @@ namespace alveolus
   public:
     /**
      * Take a pattern, add what is missing of the diagonal, set zero values.
-     * Indices are short ones: a third of the memory of a matrix is saved and
+     * Indices are short ones: a quarter of the memory of a matrix is saved and
      * some of the factors'. @throws RunError beyond 2^31 entries
      */
     void
