@@ -12,8 +12,7 @@ namespace alveolus
   {
     using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-    /** All entries: products by SymmetricTensor's indices take five times as
-     * long. */
+    /** All entries, since SymmetricTensor's indices are costly in a product. */
     inline Matrix3
     matrix(const SymmetricTensor<2, 3> &A)
     {

@@ -90,8 +90,7 @@ namespace alveolus
 
     static const std::array<ShapeGradients<dim>, 2> shapes{
       {ShapeGradients<dim>(FE_Q<dim>(1)), ShapeGradients<dim>(FE_Q<dim>(2))}};
-    Assert(configuration.degree >= 1 && configuration.degree <= 2,
-           ExcNotImplemented());
+    AssertIndexRange(configuration.degree - 1, shapes.size());
     const ShapeGradients<dim> &shape = shapes[configuration.degree - 1];
 
     std::vector<unsigned int> dof_of(shape.n_nodes * dim);

@@ -7,8 +7,9 @@ namespace alveolus
   using namespace dealii;
 
   template <int dim>
-  CopiedNodes<dim>::CopiedNodes(const std::string &which)
+  CopiedNodes<dim>::CopiedNodes(const std::string &which, const Source source)
     : which(which)
+    , source(source)
   {}
 
   template <int dim>
@@ -45,38 +46,30 @@ namespace alveolus
   }
 
   template <int dim>
-  FixedRule<dim>::FixedRule()
-    : CopiedNodes<dim>("are fixed")
-  {}
+  void
+  CopiedNodes<dim>::apply(const Nodes<dim>  &nodes,
+                          const NodalVector &start,
+                          const NodalVector &lagrangian,
+                          NodalVector       &proposed,
+                          RezoningReport & /*report*/) const
+  {
+    copy_components<dim>(nodes,
+                         touched,
+                         components,
+                         source == Source::start ? start : lagrangian,
+                         proposed);
+  }
 
   template <int dim>
-  void
-  FixedRule<dim>::apply(const Nodes<dim>  &nodes,
-                        const NodalVector &start,
-                        const NodalVector & /*lagrangian*/,
-                        NodalVector &proposed,
-                        RezoningReport & /*report*/) const
-  {
-    copy_components<dim>(
-      nodes, this->touched, this->components, start, proposed);
-  }
+  FixedRule<dim>::FixedRule()
+    : CopiedNodes<dim>("are fixed", CopiedNodes<dim>::Source::start)
+  {}
 
   template <int dim>
   MaterialRule<dim>::MaterialRule()
-    : CopiedNodes<dim>("stay with the material")
+    : CopiedNodes<dim>("stay with the material",
+                       CopiedNodes<dim>::Source::lagrangian)
   {}
-
-  template <int dim>
-  void
-  MaterialRule<dim>::apply(const Nodes<dim> &nodes,
-                           const NodalVector & /*start*/,
-                           const NodalVector &lagrangian,
-                           NodalVector       &proposed,
-                           RezoningReport & /*report*/) const
-  {
-    copy_components<dim>(
-      nodes, this->touched, this->components, lagrangian, proposed);
-  }
 
   template class CopiedNodes<2>;
   template class CopiedNodes<3>;

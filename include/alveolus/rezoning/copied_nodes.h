@@ -14,9 +14,16 @@ namespace alveolus
     /** When the rule runs, see RezoningRule. */
     using Stage = typename RezoningRule<dim>::Stage;
 
+    /** Where the positions come from. */
+    enum class Source
+    {
+      start,     ///< of the mesh before the step
+      lagrangian ///< of the material after it
+    };
+
     /** @param which components the parameter `Components` chooses, for the
      *        manual */
-    explicit CopiedNodes(const std::string &which);
+    CopiedNodes(const std::string &which, const Source source);
 
     void
     declare_parameters(dealii::ParameterHandler &prm) override;
@@ -27,6 +34,12 @@ namespace alveolus
            const NodalVector      &positions,
            const std::set<NodeId> &taken,
            const std::string      &where) override;
+    void
+    apply(const Nodes<dim>  &nodes,
+          const NodalVector &start,
+          const NodalVector &lagrangian,
+          NodalVector       &proposed,
+          RezoningReport    &report) const override;
     const std::vector<NodeId> &
     touched_nodes() const override
     {
@@ -38,12 +51,11 @@ namespace alveolus
       return components;
     }
 
-  protected:
-    std::bitset<dim>    components; ///< that are copied
-    std::vector<NodeId> touched;    ///< nodes that are copied
-
   private:
+    std::bitset<dim>         components; ///< that are copied
+    std::vector<NodeId>      touched;    ///< nodes that are copied
     const std::string        which;
+    const Source             source;
     std::vector<std::string> on, component_names;
   };
 
@@ -56,12 +68,6 @@ namespace alveolus
   {
   public:
     FixedRule();
-    void
-    apply(const Nodes<dim>  &nodes,
-          const NodalVector &start,
-          const NodalVector &lagrangian,
-          NodalVector       &proposed,
-          RezoningReport    &report) const override;
   };
 
   /**
@@ -73,12 +79,6 @@ namespace alveolus
   {
   public:
     MaterialRule();
-    void
-    apply(const Nodes<dim>  &nodes,
-          const NodalVector &start,
-          const NodalVector &lagrangian,
-          NodalVector       &proposed,
-          RezoningReport    &report) const override;
   };
 } // namespace alveolus
 
