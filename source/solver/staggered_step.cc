@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/solver/staggered_step.h>
 
-#include <deal.II/base/work_stream.h>
-
 #include <sstream>
 
 namespace alveolus
@@ -69,6 +67,8 @@ namespace alveolus
       if (cell->is_locally_owned() &&
           laws[state.history.region(cell->active_cell_index())].law != nullptr)
         cells.push_back(cell->active_cell_index());
+    points = std::make_unique<PointRemodelling<dim>>(
+      state, laws, cells, parameters.local_tolerance);
     if (parameters.filter_length > 0.)
       filter = std::make_unique<HelmholtzFilter<dim>>(state.configuration,
                                                       cells,
@@ -99,68 +99,7 @@ namespace alveolus
         filter->apply(equilibrium.assembly().step_geometry(), stimulus);
       }
 
-    // Points are independent: any order gives the same result, and the
-    // reports are combined in the order of the cells.
-    std::vector<RemodellingReport> reports(cells.size() * n_points);
-    std::vector<std::string>       failures(cells.size());
-    parallel::apply_to_subranges(
-      0U,
-      static_cast<unsigned int>(cells.size()),
-      [&](const unsigned int begin, const unsigned int end) {
-        for (unsigned int c = begin; c < end; ++c)
-          {
-            const auto           &region = laws[state.history.region(cells[c])];
-            const LocalIntegrator integrator(*region.law,
-                                             *region.bone,
-                                             parameters.local_tolerance);
-            try
-              {
-                for (unsigned int q = 0; q < n_points; ++q)
-                  reports[c * n_points + q] =
-                    integrator.advance(state.history.trial_record(cells[c], q),
-                                       dt,
-                                       filter ? &stimulus[c * n_points + q]
-                                              : nullptr);
-              }
-            catch (const RunError &error)
-              {
-                failures[c] = error.what();
-              }
-          }
-      },
-      16);
-    RemodellingSummary summary;
-    for (const auto &failure : failures)
-      if (!failure.empty())
-        summary.failure = failure;
-    for (const auto &report : reports)
-      {
-        summary.largest_density_change =
-          std::max(summary.largest_density_change,
-                   std::abs(report.density_change));
-        summary.n_fabric_limited += report.n_fabric_limited;
-        summary.n_at_lower_bound += report.at_lower_bound;
-        summary.n_at_upper_bound += report.at_upper_bound;
-      }
-    const MPI_Comm communicator = state.configuration.communicator();
-    summary.largest_density_change =
-      Utilities::MPI::max(summary.largest_density_change, communicator);
-    const unsigned int n = Utilities::MPI::n_mpi_processes(communicator);
-    const unsigned int first_failed =
-      Utilities::MPI::min(summary.failure.empty()
-                            ? n
-                            : Utilities::MPI::this_mpi_process(communicator),
-                          communicator);
-    if (first_failed < n)
-      summary.failure =
-        Utilities::MPI::broadcast(communicator, summary.failure, first_failed);
-    summary.n_fabric_limited =
-      Utilities::MPI::sum(summary.n_fabric_limited, communicator);
-    summary.n_at_lower_bound =
-      Utilities::MPI::sum(summary.n_at_lower_bound, communicator);
-    summary.n_at_upper_bound =
-      Utilities::MPI::sum(summary.n_at_upper_bound, communicator);
-    return summary;
+    return points->advance(dt, filter ? &stimulus : nullptr);
   }
 
 

@@ -2,41 +2,12 @@
 #ifndef alveolus_solver_staggered_step_h
 #define alveolus_solver_staggered_step_h
 
-#include <alveolus/remodelling/local_integrator.h>
 #include <alveolus/solver/equilibrium.h>
 #include <alveolus/solver/helmholtz_filter.h>
+#include <alveolus/solver/point_remodelling.h>
 
 namespace alveolus
 {
-  /** What remodelling did in a step, over all processes. */
-  struct RemodellingSummary
-  {
-    double largest_density_change = 0.; ///< at a point [g/cc]
-    /** Points whose fabric was kept in its bounds. */
-    unsigned int n_fabric_limited      = 0;
-    unsigned int n_at_lower_bound      = 0; ///< points at the lowest density
-    unsigned int n_at_upper_bound      = 0; ///< points at the highest density
-    unsigned int n_coupling_iterations = 0; ///< equilibria of an iterated step
-    std::string  failure; ///< why a point could not be integrated, if any
-
-    // Where the books of energy are kept [mJ (per mm)]:
-    /** Change of the stored energy by density and fabric at fixed strain. */
-    double energy = 0.;
-    /**
-     * Stored at the end less stored by the last equilibrium, with the weights
-     * of the mesh x_n.
-     */
-    double stored       = 0.;
-    double stored_moved = 0.; ///< the same with those of the moved mesh
-  };
-
-  /** The remodelling of one region: null pointers where there is none. */
-  struct RegionRemodelling
-  {
-    const RemodellingLaw *law  = nullptr; ///< rates of density and fabric
-    const RemodelledBone *bone = nullptr; ///< the material that they change
-  };
-
   /**
    * The Lagrangian phase of a step: equilibrium with density and fabric frozen
    * in the material, then remodelling of every point at fixed elastic strain
@@ -115,14 +86,15 @@ namespace alveolus
             const std::vector<double> *iterated,
             RemodellingSummary        &summary) const;
 
-    State<dim>                           &state;
-    Equilibrium<dim>                     &equilibrium;
-    const std::vector<RegionRemodelling> &laws;
-    const Parameters                     &parameters;
-    dealii::TimerOutput                  &timer;
-    bool                                  active = false, booked = false;
-    std::vector<unsigned int>             cells; ///< owned, remodelled
-    std::unique_ptr<HelmholtzFilter<dim>> filter;
+    State<dim>                            &state;
+    Equilibrium<dim>                      &equilibrium;
+    const std::vector<RegionRemodelling>  &laws;
+    const Parameters                      &parameters;
+    dealii::TimerOutput                   &timer;
+    bool                                   active = false, booked = false;
+    std::vector<unsigned int>              cells; ///< owned, remodelled
+    std::unique_ptr<PointRemodelling<dim>> points;
+    std::unique_ptr<HelmholtzFilter<dim>>  filter;
   };
 } // namespace alveolus
 
