@@ -284,103 +284,21 @@ namespace alveolus
   void
   GiulianiRule<dim>::prepare_chebyshev(const NodalVector &positions)
   {
-    first_link.assign(1, 0);
-    links.clear();
-    double largest_row = 0.;
+    using Link = typename ChebyshevSweeps<dim>::Link;
+    std::vector<std::vector<Link>> links(vertices.size());
     for (unsigned int v = 0; v < vertices.size(); ++v)
       {
         std::map<LocalNode, double> weights;
         for (unsigned int i = first_corner[v]; i < first_corner[v + 1]; ++i)
           for (unsigned int a = 0; a < dim; ++a)
             weights[corners[i].neighbours[a]] += corners[i].weights[a];
-        double row = 0.;
         for (const auto &weight : weights)
-          {
-            links.emplace_back(weight.second, weight.first);
-            row += std::abs(weight.second);
-          }
-        largest_row = std::max(largest_row, row);
-        first_link.push_back(links.size());
+          links[v].emplace_back(weight.second, weight.first);
       }
-    const MPI_Comm communicator = positions.get_mpi_communicator();
-    largest_eigenvalue = 1. + Utilities::MPI::max(largest_row, communicator);
-
-    // Power iteration with I - (I - W)/2, from a smooth start
-    constexpr unsigned int n_sweeps = 100;
-    NodalVector            mode(positions);
-    mode = 0.;
-    std::vector<double> next(vertices.size());
-    for (const auto &vertex : vertices)
-      mode.local_element(vertex[0]) = 1.;
-    double sum = 1., last_sum = 1.;
-    for (unsigned int sweep = 0; sweep <= n_sweeps; ++sweep)
-      {
-        mode.update_ghost_values();
-        last_sum = sum;
-        sum      = 0.;
-        for (unsigned int v = 0; v < vertices.size(); ++v)
-          {
-            const double here = mode.local_element(vertices[v][0]);
-            next[v]           = 0.5 * here;
-            for (unsigned int i = first_link[v]; i < first_link[v + 1]; ++i)
-              next[v] +=
-                0.5 * links[i].first * mode.local_element(links[i].second[0]);
-            sum += next[v];
-          }
-        for (unsigned int v = 0; v < vertices.size(); ++v)
-          mode.local_element(vertices[v][0]) = next[v];
-        sum = Utilities::MPI::sum(sum, communicator);
-      }
-    // From above, hence the factor
-    smallest_eigenvalue =
-      sum > 0. && sum < last_sum ? 0.7 * 2. * (1. - sum / last_sum) : 1e-4;
+    chebyshev.reinit(positions, vertices, links);
   }
 
-  template <int dim>
-  bool
-  GiulianiRule<dim>::accelerated(const MPI_Comm &communicator,
-                                 NodalVector    &proposed,
-                                 RezoningReport &report) const
-  {
-    // E.g. Saad, Iterative Methods for Sparse Linear Systems (2003), 12.3.2;
-    // no scalar products, so that any number of processes gives the same.
-    const double middle = 0.5 * (largest_eigenvalue + smallest_eigenvalue);
-    const double radius = 0.5 * (largest_eigenvalue - smallest_eigenvalue);
-    double       rho    = 0.;
-    std::vector<double> sizes(vertices.size());
-    for (unsigned int v = 0; v < vertices.size(); ++v)
-      sizes[v] = target(proposed, v).second;
-    std::vector<Tensor<1, dim>> steps(vertices.size());
-    for (unsigned int sweep = 0; sweep < largest_sweeps; ++sweep)
-      {
-        double       furthest = 0.;
-        const double next     = 1. / (2. * middle / radius - rho);
-        const double keep     = sweep == 0 ? 0. : next * rho;
-        const double gain     = sweep == 0 ? 1. / middle : 2. * next / radius;
-        rho                   = sweep == 0 ? radius / middle : next;
-        for (unsigned int v = 0; v < vertices.size(); ++v)
-          {
-            Tensor<1, dim> way = -get<dim>(proposed, vertices[v]);
-            for (unsigned int i = first_link[v]; i < first_link[v + 1]; ++i)
-              way += links[i].first * get<dim>(proposed, links[i].second);
-            const double rest = way.norm() / sizes[v];
-            // A number that is none is never close.
-            if (!(rest <= furthest))
-              furthest =
-                std::isnan(rest) ? std::numeric_limits<double>::max() : rest;
-            steps[v] = keep * steps[v] + gain * way;
-          }
-        for (unsigned int v = 0; v < vertices.size(); ++v)
-          set<dim>(proposed,
-                   vertices[v],
-                   get<dim>(proposed, vertices[v]) + steps[v]);
-        proposed.update_ghost_values();
-        ++report.sweeps;
-        if (Utilities::MPI::max(furthest, communicator) <= tolerance)
-          return true;
-      }
-    return false;
-  }
+
 
   template <int dim>
   std::pair<Point<dim>, double>
@@ -422,11 +340,20 @@ namespace alveolus
                            RezoningReport &report) const
   {
     const MPI_Comm          communicator = nodes.configuration.communicator();
-    const bool              chebyshev    = iteration == "Chebyshev";
     std::vector<Point<dim>> moved(vertices.size());
-    bool converged = chebyshev && accelerated(communicator, proposed, report);
-    for (unsigned int sweep = 0;
-         !chebyshev && sweep < largest_sweeps && !converged;
+    bool                    converged = false;
+    const bool              sweeps    = iteration == "Jacobi";
+    if (!sweeps)
+      {
+        std::vector<double> sizes(vertices.size());
+        for (unsigned int v = 0; v < vertices.size(); ++v)
+          sizes[v] = target(proposed, v).second;
+        const auto done =
+          chebyshev.solve(proposed, sizes, tolerance, largest_sweeps);
+        report.sweeps += done.n_sweeps;
+        converged = done.converged;
+      }
+    for (unsigned int sweep = 0; sweeps && sweep < largest_sweeps && !converged;
          ++sweep)
       {
         double furthest = 0.;

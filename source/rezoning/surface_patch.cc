@@ -169,20 +169,17 @@ namespace alveolus
 
 
 
-  std::vector<SurfacePatch::Place>
-  SurfacePatch::harmonic(const std::vector<Place> &held) const
+  void
+  SurfacePatch::harmonic(const std::vector<Place> &held,
+                         const unsigned int        c,
+                         std::vector<Place>       &x) const
   {
-    std::vector<Place> x(initial);
-    Vector<double>     given(nodes.size()), displacement(nodes.size());
-    for (unsigned int c = 0; c < 3; ++c)
-      {
-        for (unsigned int i = 0; i < nodes.size(); ++i)
-          given[i] = is_free[i] ? 0. : held[i][c] - initial[i][c];
-        factors->solve(displacement, given);
-        for (unsigned int i = 0; i < nodes.size(); ++i)
-          x[i][c] = is_free[i] ? initial[i][c] + displacement[i] : held[i][c];
-      }
-    return x;
+    Vector<double> given(nodes.size()), displacement(nodes.size());
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      given[i] = is_free[i] ? 0. : held[i][c] - initial[i][c];
+    factors->solve(displacement, given);
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      x[i][c] = is_free[i] ? initial[i][c] + displacement[i] : held[i][c];
   }
 
 
@@ -245,12 +242,13 @@ namespace alveolus
 
   void
   SurfacePatch::project(const std::vector<Place> &surface,
-                        const std::vector<bool>  &wanted,
+                        const unsigned int        begin,
+                        const unsigned int        end,
                         std::vector<Place>       &x) const
   {
     std::map<unsigned int, Frame> frames;
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      if (is_free[i] && wanted[i])
+    for (unsigned int i = begin; i < end; ++i)
+      if (is_free[i])
         {
           unsigned int nearest = i;
           for (bool moved = true; moved;)

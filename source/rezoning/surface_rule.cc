@@ -45,7 +45,8 @@ namespace alveolus
                       const std::string      &where)
   {
     require_names(on, where);
-    const MPI_Comm communicator = nodes.configuration.communicator();
+    const MPI_Comm     communicator = nodes.configuration.communicator();
+    const unsigned int me = Utilities::MPI::this_mpi_process(communicator);
     patches.clear();
     touched.clear();
     solver.clear();
@@ -57,10 +58,12 @@ namespace alveolus
       {
         patches.emplace_back(nodes, positions, taken, name, where + "/On");
         SurfacePatch &patch = patches.back();
-        solver.push_back(std::min_element(load.begin(), load.end()) -
-                         load.begin());
-        load[solver.back()] += patch.nodes.size();
-        if (solver.back() == Utilities::MPI::this_mpi_process(communicator))
+        for (unsigned int &process : solver.emplace_back())
+          {
+            process = std::min_element(load.begin(), load.end()) - load.begin();
+            load[process] += patch.nodes.size();
+          }
+        if (std::count(solver.back().begin(), solver.back().end(), me) > 0)
           patch.factorise();
         bool depends = batches.empty();
         for (unsigned int i = 0; i < patch.nodes.size(); ++i)
@@ -85,33 +88,47 @@ namespace alveolus
 
 
 
-  std::vector<std::vector<SurfacePatch::Place>>
-  SurfaceRule::harmonic(const Batch       &batch,
-                        const Nodes<3>    &nodes,
-                        const NodalVector &proposed) const
+  namespace
   {
-    const MPI_Comm communicator = nodes.configuration.communicator();
-    // First what all take part in, so that no process waits for another's
-    // solution
-    std::vector<std::vector<SurfacePatch::Place>> x;
-    for (unsigned int p = batch.first; p < batch.last; ++p)
-      x.push_back(nodes.gather(proposed, patches[p].nodes));
-    std::vector<double> all; // each from its process, the others add zero
-    for (unsigned int p = batch.first; p < batch.last; ++p)
-      if (solver[p] == Utilities::MPI::this_mpi_process(communicator))
-        for (const auto &place : patches[p].harmonic(x[p - batch.first]))
+    using Places = std::vector<std::vector<SurfacePatch::Place>>;
+
+    /** Positions of the nodes of @p patches, patch by patch (collective). */
+    Places
+    gather(const Nodes<3>     &nodes,
+           const NodalVector  &positions,
+           const SurfacePatch *patches,
+           const unsigned int  n_patches)
+    {
+      std::vector<NodeId> all;
+      for (unsigned int p = 0; p < n_patches; ++p)
+        all.insert(all.end(), patches[p].nodes.begin(), patches[p].nodes.end());
+      const auto x    = nodes.gather(positions, all);
+      auto       next = x.begin();
+      Places     places(n_patches);
+      for (unsigned int p = 0; p < n_patches; ++p)
+        {
+          places[p].assign(next, next + patches[p].nodes.size());
+          next += patches[p].nodes.size();
+        }
+      return places;
+    }
+
+    /** What each process has found, where the others have zero (collective). */
+    void
+    sum(Places &places, const MPI_Comm &communicator)
+    {
+      std::vector<double> all;
+      for (const auto &patch : places)
+        for (const auto &place : patch)
+          all.insert(all.end(), place.begin_raw(), place.end_raw());
+      Utilities::MPI::sum(all, communicator, all);
+      const double *next = all.data();
+      for (auto &patch : places)
+        for (auto &place : patch)
           for (unsigned int c = 0; c < 3; ++c)
-            all.push_back(place[c]);
-      else
-        all.resize(all.size() + 3 * patches[p].nodes.size(), 0.);
-    Utilities::MPI::sum(all, communicator, all);
-    const double *next = all.data();
-    for (auto &places : x)
-      for (auto &place : places)
-        for (unsigned int c = 0; c < 3; ++c)
-          place[c] = *next++;
-    return x;
-  }
+            place[c] = *next++;
+    }
+  } // namespace
 
 
 
@@ -122,24 +139,44 @@ namespace alveolus
                      NodalVector       &proposed,
                      RezoningReport & /*report*/) const
   {
+    const MPI_Comm     communicator = nodes.configuration.communicator();
+    const unsigned int me = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int n  = Utilities::MPI::n_mpi_processes(communicator);
     for (const Batch &batch : batches)
       {
-        auto positions = harmonic(batch, nodes, proposed);
-        for (unsigned int p = batch.first; p < batch.last; ++p)
+        const SurfacePatch *first     = &patches[batch.first];
+        const unsigned int  n_patches = batch.last - batch.first;
+        Places              x = gather(nodes, proposed, first, n_patches);
+        for (unsigned int p = 0; p < n_patches; ++p)
           {
-            const SurfacePatch &patch = patches[p];
-            auto               &x     = positions[p - batch.first];
-            if (stay)
-              {
-                std::vector<bool> wanted(x.size());
-                for (unsigned int i = 0; i < x.size(); ++i)
-                  wanted[i] = nodes.is_owned(patch.nodes[i]);
-                patch.project(nodes.gather(lagrangian, patch.nodes), wanted, x);
-              }
-            for (unsigned int i = 0; i < x.size(); ++i)
-              if (patch.is_free[i] && nodes.is_owned(patch.nodes[i]))
-                nodes.set(proposed, patch.nodes[i], x[i]);
+            const auto held = x[p];
+            x[p].assign(held.size(), SurfacePatch::Place());
+            for (unsigned int c = 0; c < 3; ++c)
+              if (solver[batch.first + p][c] == me)
+                first[p].harmonic(held, c, x[p]);
           }
+        sum(x, communicator);
+
+        if (stay)
+          {
+            // Each process takes as many nodes as the others, whoever owns them
+            const Places surface = gather(nodes, lagrangian, first, n_patches);
+            for (unsigned int p = 0; p < n_patches; ++p)
+              {
+                const std::size_t size  = x[p].size();
+                const std::size_t begin = size * me / n;
+                const std::size_t end   = size * (me + 1) / n;
+                first[p].project(surface[p], begin, end, x[p]);
+                for (std::size_t i = 0; i < size; ++i)
+                  if (i < begin || i >= end)
+                    x[p][i] = SurfacePatch::Place();
+              }
+            sum(x, communicator);
+          }
+        for (unsigned int p = 0; p < n_patches; ++p)
+          for (unsigned int i = 0; i < x[p].size(); ++i)
+            if (first[p].is_free[i] && nodes.is_owned(first[p].nodes[i]))
+              nodes.set(proposed, first[p].nodes[i], x[p][i]);
       }
     proposed.update_ghost_values();
   }

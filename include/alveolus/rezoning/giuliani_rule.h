@@ -2,6 +2,7 @@
 #ifndef alveolus_rezoning_giuliani_rule_h
 #define alveolus_rezoning_giuliani_rule_h
 
+#include <alveolus/rezoning/chebyshev_sweeps.h>
 #include <alveolus/rezoning/rezoning_rule.h>
 
 #include <array>
@@ -95,17 +96,9 @@ namespace alveolus
                 const LocalNode     &vertex,
                 std::vector<Corner> &around) const;
 
-    /** Gather the weights of each neighbour of a vertex, and find the smallest
-     * eigenvalue of I minus their matrix (collective). */
+    /** Gather the weights of each neighbour of a vertex (collective). */
     void
     prepare_chebyshev(const NodalVector &positions);
-
-    /** Chebyshev's semi-iteration instead of Jacobi sweeps; whether it has
-     * converged. */
-    bool
-    accelerated(const MPI_Comm &communicator,
-                NodalVector    &proposed,
-                RezoningReport &report) const;
 
     /** New place of vertex @p v by its corners, and the local size. */
     std::pair<dealii::Point<dim>, double>
@@ -122,10 +115,7 @@ namespace alveolus
     std::vector<LocalNode>    vertices;
     std::vector<unsigned int> first_corner; ///< of each vertex, and the end
     std::vector<Corner>       corners;
-    /** For Chebyshev: neighbours of each vertex with their weights in all. */
-    std::vector<unsigned int>                 first_link;
-    std::vector<std::pair<double, LocalNode>> links;
-    double smallest_eigenvalue = 0., largest_eigenvalue = 2.;
+    ChebyshevSweeps<dim>      chebyshev;
     /** On lines, faces (3D) and inside cells, in this order. */
     std::array<std::vector<MiddleNode>, dim> middles;
     std::vector<NodeId>                      touched;

@@ -38,27 +38,32 @@ namespace alveolus
     factorise();
 
     /**
-     * Positions of all nodes with the displacement from the initial ones that
-     * is harmonic between the held ones: sum over the neighbours j of w_ij (d_j
+     * Component @p c of the positions @p x of all nodes with the displacement
+     * from the initial ones that is harmonic between the held ones: sum over
+     * the neighbours j of w_ij (d_j
      * - d_i) = 0, w the stiffness of linear elements on the triangles of a node
      * with its neighbours in each quadrilateral, as in GiulianiRule. So
      * translations are followed exactly, on planes all affine maps.
      * @param held positions of which those of held nodes are used [mm]
      */
-    std::vector<Place>
-    harmonic(const std::vector<Place> &held) const;
+    void
+    harmonic(const std::vector<Place> &held,
+             const unsigned int        c,
+             std::vector<Place>       &x) const;
 
     /**
-     * Move the @p wanted nodes of @p x, free ones, onto the surface through @p
-     * surface: the place of each is written in the frame of the nearest node of
-     * the surface, where the latter is h(t) = g t + t K t / 2 over the tangent
-     * plane, fitted through the nodes of two rings of quadrilaterals around. On
-     * planes exact, otherwise with an error of third order in the distance of
-     * nodes, which vanishes with the way of a node along the surface.
+     * Move the free ones among the nodes from @p begin to before @p end of
+     * @p x onto the surface through @p surface: the place of each is written in
+     * the frame of the nearest node of the surface, where the latter is h(t) =
+     * g t + t K t / 2 over the tangent plane, fitted through the nodes of two
+     * rings of quadrilaterals around. On planes exact, otherwise with an error
+     * of third order in the distance of nodes, which vanishes with the way of a
+     * node along the surface.
      */
     void
     project(const std::vector<Place> &surface,
-            const std::vector<bool>  &wanted,
+            const unsigned int        begin,
+            const unsigned int        end,
             std::vector<Place>       &x) const;
 
     std::vector<NodeId> nodes;   ///< ascending

@@ -12,9 +12,10 @@ namespace alveolus
    * harmonic displacement between the rim and the nodes that earlier rules set,
    * then, unless the surface is part of the mesh only, back onto the surface
    * through the Lagrangian positions (SurfacePatch).
-   * Every process knows the surfaces; the harmonic displacement of each is
-   * solved for on one of them, the way back onto the surface is found by the
-   * owner of each node. Three dimensions only.
+   * Every process knows the surfaces; each component of the harmonic
+   * displacement of each is solved for on one of them, and each finds the way
+   * back onto the surface for as many nodes as the others. Three dimensions
+   * only.
    */
   class SurfaceRule : public RezoningRule<3>
   {
@@ -58,17 +59,11 @@ namespace alveolus
       unsigned int first, last;
     };
 
-    /** Harmonic positions of the nodes of a batch, patch by patch
-     * (collective). */
-    std::vector<std::vector<SurfacePatch::Place>>
-    harmonic(const Batch       &batch,
-             const Nodes<3>    &nodes,
-             const NodalVector &proposed) const;
-
     std::vector<SurfacePatch> patches;
-    std::vector<unsigned int> solver; ///< process, of each patch
-    std::vector<Batch>        batches;
-    std::vector<NodeId>       touched;
+    /** Process, of each patch and component. */
+    std::vector<std::array<unsigned int, 3>> solver;
+    std::vector<Batch>                       batches;
+    std::vector<NodeId>                      touched;
   };
 } // namespace alveolus
 
