@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <alveolus/base/errors.h>
 #include <alveolus/transfer/boundary_curves.h>
+#include <alveolus/transfer/boundary_surface.h>
 #include <alveolus/transfer/face_transfer.h>
 
 #include <algorithm>
@@ -174,14 +175,28 @@ namespace alveolus
 
   template <>
   FaceTransferReport
-  FaceTransfer<3>::transfer(FaceHistory<3> &,
-                            const NodalVector &,
-                            const NodalVector &) const
+  FaceTransfer<3>::transfer(FaceHistory<3>    &history,
+                            const NodalVector &x_old,
+                            const NodalVector &x_new) const
   {
-    throw RunError("Transfer",
-                   "history of a boundary cannot be moved along a surface yet",
-                   "use a two-dimensional model, a mesh that is not rezoned on "
-                   "this boundary, or the volume model of the interface");
+    cells.check(x_old);
+    cells.check(x_new);
+
+    unsigned int first_own = 0;
+    auto faces = gather_faces(configuration, history, x_old, x_new, first_own);
+    BoundarySurface    surface(faces, history.n_points, history.n_components);
+    FaceTransferReport report;
+    report.length_before = surface.integrate(false, report.integral_before);
+    for (const BoundaryFace &face : faces)
+      report.moved = report.moved || face.before != face.after;
+    if (report.moved)
+      report.largest_distance = surface.transfer();
+    report.length_after = surface.integrate(true, report.integral_after);
+    for (unsigned int f = 0; f < history.faces().size(); ++f)
+      std::copy(faces[first_own + f].values.begin(),
+                faces[first_own + f].values.end(),
+                history.old_record(f, 0));
+    return report;
   }
 
   template <>

@@ -522,15 +522,6 @@ TEST(FaceTransfer, SameOnAnyNumberOfProcesses)
   EXPECT_EQ(reference.size(), 32u);
 }
 
-TEST(FaceTransfer, SurfacesAreRefused)
-{
-  Problem<3>        s(1, &cube<3>);
-  FaceHistory<3>    history(*s.mesh.triangulation, {0}, 4, 3);
-  const NodalVector x = s.configuration->positions();
-  EXPECT_THROW(FaceTransfer<3>(*s.configuration).transfer(history, x, x),
-               RunError);
-}
-
 namespace
 {
   /** Unit square with @p n cells along y, side x = 0 is boundary 0. */

@@ -13,30 +13,39 @@ namespace alveolus
   /** What a transfer along a boundary did. */
   struct FaceTransferReport
   {
-    double length_before = 0.; ///< of the boundary [mm]
+    /** Length [mm] or area [mm^2] of the boundary. */
+    double length_before = 0.;
     double length_after  = 0.; ///< the same afterwards [mm]
-    /** Integrals over old and new boundary by component [unit mm]. */
+    /** Integrals over old and new boundary by component [unit mm^(dim-1)]. */
     std::vector<double> integral_before;
     std::vector<double> integral_after; ///< the same afterwards
-    double largest_distance = 0.; ///< of new points from the old curve [mm]
+    /** Of new points from the old curve; of the motion of points normal to the
+     * old surface [mm]. */
+    double largest_distance = 0.;
     /** False: the boundary stayed, nothing was done. */
     bool moved = false;
   };
 
   /**
-   * History of a boundary curve (dim = 2) moved along the curve with its nodes,
-   * on the same connectivity. The ends of the new sub-segments are projected
+   * History of a boundary moved along it with its nodes, on the same
+   * connectivity.
+   *
+   * On a curve (dim = 2) the ends of the new sub-segments are projected
    * onto the old curve, walking along it from where they were; the new value is
    * the mean of the old piecewise constant values over the piece of old arc
    * length between them. First order, exact for constants, no new extrema;
    * sum (piece of old arc length) x (value) is conserved where the ends of the
    * curve stay. Beyond the end of an open curve its last value goes on.
    *
-   * The boundary may consist of several open or closed curves, which may not
-   * branch. The (small) data of the whole boundary are gathered on every
-   * process, so that the result is the same for any number of processes.
+   * On a surface (dim = 3) the edges of the sub-quadrilaterals sweep areas, by
+   * which values pass, see BoundarySurface: first order, exact for constants,
+   * no new extrema; conserved are the sums of (area) x (value), up to the part
+   * of the area that the curvature of the surface changes. At the rim of an
+   * open surface its values go on.
    *
-   * Not yet written for surfaces (dim = 3).
+   * The boundary may consist of several parts, which may not branch. The
+   * (small) data of the whole boundary are gathered on every
+   * process, so that the result is the same for any number of processes.
    */
   template <int dim>
   class FaceTransfer
@@ -48,8 +57,8 @@ namespace alveolus
     /**
      * Move the old records of @p history from positions @p x_old to @p x_new
      * (collective).
-     * @throws RunError if the boundary branches, the new nodes are out of
-     *         order along the old curve, or dim = 3
+     * @throws RunError if the boundary branches, or the new nodes are out of
+     *         order along the old one
      */
     FaceTransferReport
     transfer(FaceHistory<dim>  &history,
@@ -60,6 +69,18 @@ namespace alveolus
     const Configuration<dim> &configuration;
     const CellNodes<dim>      cells;
   };
+
+  /** Curves and surfaces have little in common. */
+  template <>
+  FaceTransferReport
+  FaceTransfer<2>::transfer(FaceHistory<2> &,
+                            const NodalVector &,
+                            const NodalVector &) const;
+  template <>
+  FaceTransferReport
+  FaceTransfer<3>::transfer(FaceHistory<3> &,
+                            const NodalVector &,
+                            const NodalVector &) const;
 } // namespace alveolus
 
 #endif
