@@ -49,24 +49,6 @@ namespace alveolus
   } // namespace
 
   template <>
-  FaceOverlap<3>::FaceOverlap(const Configuration<3> &, const FaceHistory<3> &h)
-    : n_points(h.n_points)
-    , n_components(h.n_components)
-  {
-    throw RunError("Transfer",
-                   "history of a boundary cannot be moved between surfaces yet",
-                   "use a two-dimensional model, or the volume model of the "
-                   "interface");
-  }
-
-  template <>
-  FaceTransferReport
-  FaceOverlap<3>::transfer(const Configuration<3> &, FaceHistory<3> &) const
-  {
-    return {}; // there is no such object
-  }
-
-  template <>
   FaceOverlap<2>::FaceOverlap(const Configuration<2> &old_configuration,
                               const FaceHistory<2>   &old_history)
     : n_points(old_history.n_points)

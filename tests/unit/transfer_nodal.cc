@@ -656,9 +656,6 @@ TEST(FaceOverlap, Errors)
     return Tensor<1, 2>({0.2, 0.});
   }));
   EXPECT_THROW(overlap.transfer(*b.configuration, new_history), RunError);
-  Problem<3>     c(1, &cube<3>);
-  FaceHistory<3> surface(*c.mesh.triangulation, {0}, 4, 3);
-  EXPECT_THROW(FaceOverlap<3>(*c.configuration, surface), RunError);
 }
 
 // Not a check but a measurement: about 1000 nodes, all of which move, and a

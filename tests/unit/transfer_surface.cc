@@ -2,8 +2,10 @@
 // mpirun=2
 // History of a boundary in space that slides along it: constants, integrals,
 // bounds, order of convergence, any number of processes.
+#include <alveolus/base/errors.h>
 #include <alveolus/transfer/boundary_curves.h>
 #include <alveolus/transfer/boundary_surface.h>
+#include <alveolus/transfer/face_overlap.h>
 #include <alveolus/transfer/face_transfer.h>
 
 #include <deal.II/fe/fe_values.h>
@@ -320,4 +322,116 @@ TEST(SurfaceTransfer, SameOnAnyNumberOfProcesses)
         }
     }
   EXPECT_EQ(reference.size(), 24u);
+}
+
+
+
+// Unrelated meshes of the same plane: exact means, contents kept
+TEST(SurfaceOverlap, PlaneSide)
+{
+  const auto side = [](const unsigned int n, const unsigned int m) {
+    return [=](Grid &t) {
+      GridGenerator::subdivided_hyper_rectangle(
+        t, {1, n, m}, Point<3>(), Point<3>(0.2, 1., 1.), true);
+    };
+  };
+  Body a(1, side(4, 6)), b(1, side(7, 5));
+  a.for_all(a.configuration->positions(),
+            [](double *record, const Point<3> &p) {
+              record[0] = p[1] < 0.5 ? 2. : -1.;
+              record[1] = 0.7;
+              record[2] = std::sin(4. * p[1]) * p[2];
+            });
+  const FaceTransferReport report = FaceOverlap<3>(*a.configuration, *a.history)
+                                      .transfer(*b.configuration, *b.history);
+  EXPECT_NEAR(report.length_before, 1., 1e-14);
+  EXPECT_NEAR(report.length_after, 1., 1e-14);
+  EXPECT_LT(report.largest_distance, 1e-15);
+  for (unsigned int c = 0; c < 3; ++c)
+    EXPECT_NEAR(report.integral_after[c], report.integral_before[c], 1e-14);
+  // y = 1/2 is in the middle of the fourth of seven cells, between its two
+  // sub-quadrilaterals.
+  b.for_all(b.configuration->positions(),
+            [](const double *record, const Point<3> &p) {
+              EXPECT_NEAR(record[0], p[1] < 0.5 ? 2. : -1., 1e-14);
+              EXPECT_EQ(record[1], 0.7);
+            });
+}
+
+
+
+TEST(SurfaceOverlap, BallOnAnyNumberOfProcesses)
+{
+  const auto ball = [](const unsigned int refinements) {
+    return [=](Grid &t) {
+      GridGenerator::hyper_ball(t);
+      t.refine_global(refinements);
+    };
+  };
+  const Field field = [](const Point<3> &p) {
+    return (p[0] + 0.5 * p[2]) / p.norm();
+  };
+  const double angle = 0.2;
+  const Motion turn  = [=](const Point<3> &p) -> Tensor<1, 3> {
+    return Point<3>(std::cos(angle) * p[0] - std::sin(angle) * p[1] - p[0],
+                    std::sin(angle) * p[0] + std::cos(angle) * p[1] - p[1],
+                    0.);
+  };
+  std::map<std::pair<std::string, unsigned int>, std::vector<double>> reference;
+  std::vector<double>                                                 errors;
+  for (const unsigned int refinements : {2, 3})
+    for (const MPI_Comm communicator : {MPI_COMM_SELF, MPI_COMM_WORLD})
+      {
+        Body a(1, ball(refinements), communicator);
+        Body b(1, ball(refinements), communicator);
+        b.configuration->set_positions(b.moved(turn));
+        a.for_all(a.configuration->positions(),
+                  [&](double *record, const Point<3> &p) {
+                    record[0] = field(p);
+                    record[1] = 1.1;
+                    record[2] = p[2] > 0. ? 1. : 0.;
+                  });
+        const FaceTransferReport report =
+          FaceOverlap<3>(*a.configuration, *a.history)
+            .transfer(*b.configuration, *b.history);
+        EXPECT_NEAR(report.integral_after[1] / report.integral_before[1],
+                    1.,
+                    1e-12);
+        EXPECT_NEAR(report.integral_after[2] / report.integral_before[2],
+                    1.,
+                    0.01);
+        b.for_all(b.configuration->positions(),
+                  [](const double *record, const Point<3> &) {
+                    EXPECT_EQ(record[1], 1.1);
+                    EXPECT_GE(record[2], 0.);
+                    EXPECT_LE(record[2], 1.);
+                  });
+        for (unsigned int i = 0; i < b.history->faces().size(); ++i)
+          {
+            const auto &face = b.history->faces()[i];
+            const auto  key =
+              std::make_pair(face.cell->id().to_string(), face.face_no);
+            const std::vector<double> values(b.history->old_record(i, 0),
+                                             b.history->old_record(i, 0) + 12);
+            if (communicator == MPI_COMM_SELF)
+              reference[key] = values;
+            else
+              EXPECT_EQ(values, reference.at(key));
+          }
+        if (communicator == MPI_COMM_WORLD)
+          errors.push_back(b.error(b.configuration->positions(), field));
+      }
+  EXPECT_GT(errors[0] / errors[1], 1.8);
+  EXPECT_LT(errors[1], 0.01);
+}
+
+
+
+TEST(SurfaceOverlap, OtherSurfacesAreRefused)
+{
+  Body                 a(1, cube(4)), b(1, cube(4));
+  const FaceOverlap<3> overlap(*a.configuration, *a.history);
+  b.configuration->set_positions(
+    b.moved([](const Point<3> &) { return Point<3>(0.4, 0., 0.); }));
+  EXPECT_THROW(overlap.transfer(*b.configuration, *b.history), RunError);
 }

@@ -10,9 +10,9 @@ namespace alveolus
   /** An amount of work that one process gives to another. */
   struct WorkGift
   {
-    unsigned int from = 0; ///< the process that has too much
-    unsigned int to   = 0; ///< the one that has too little
-    double       work = 0.;
+    unsigned int from = 0;  ///< the process that has too much
+    unsigned int to   = 0;  ///< the one that has too little
+    double       work = 0.; ///< how much
   };
 
   /**

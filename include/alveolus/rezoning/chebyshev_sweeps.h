@@ -46,8 +46,8 @@ namespace alveolus
     /** How the iteration ended. */
     struct Report
     {
-      bool         converged = false;
-      unsigned int n_sweeps  = 0;
+      bool         converged = false; ///< within the tolerance
+      unsigned int n_sweeps  = 0;     ///< that were made
     };
 
     /**

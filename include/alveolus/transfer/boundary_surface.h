@@ -63,6 +63,24 @@ namespace alveolus
                     const unsigned int         n_points,
                     const unsigned int         n_components);
 
+    /** Number of sub-quadrilaterals, face by face. */
+    unsigned int
+    n_subs() const
+    {
+      return corners.size();
+    }
+
+    /** Corners of a sub-quadrilateral, before [mm], counterclockwise seen from
+     * outside. */
+    std::array<dealii::Point<3>, 4>
+    places(const unsigned int sub) const
+    {
+      std::array<dealii::Point<3>, 4> result;
+      for (unsigned int k = 0; k < 4; ++k)
+        result[k] = before[corners[sub][k]];
+      return result;
+    }
+
     /** Areas [mm^2] and integrals of all components [unit mm^2]. */
     double
     integrate(const bool after, std::vector<double> &integral) const;

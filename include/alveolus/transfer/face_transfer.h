@@ -70,12 +70,14 @@ namespace alveolus
     const CellNodes<dim>      cells;
   };
 
-  /** Curves and surfaces have little in common. */
+  // Curves and surfaces have little in common.
+  /** Along a curve. */
   template <>
   FaceTransferReport
   FaceTransfer<2>::transfer(FaceHistory<2> &,
                             const NodalVector &,
                             const NodalVector &) const;
+  /** Along a surface. */
   template <>
   FaceTransferReport
   FaceTransfer<3>::transfer(FaceHistory<3> &,
