@@ -125,6 +125,16 @@ namespace alveolus
                                                 communicator);
     for (const auto &[weight, node] : found)
       links.emplace_back(weight, swept->global_to_local(node * dim));
+    inner.clear();
+    at_ghosts.clear();
+    for (unsigned int v = 0; v < last - first; ++v)
+      {
+        bool needs_ghosts = false;
+        for (unsigned int i = first_link[v]; i < first_link[v + 1]; ++i)
+          needs_ghosts =
+            needs_ghosts || links[i].second >= swept->locally_owned_size();
+        (needs_ghosts ? at_ghosts : inner).push_back(v);
+      }
 
     find_eigenvalues(Utilities::MPI::max(largest_row, communicator));
   }
@@ -221,24 +231,29 @@ namespace alveolus
         const double gain     = is_first ? 1. / middle : 2. * next / radius;
         rho                   = is_first ? radius / middle : next;
 
-        moved.update_ghost_values();
-        double  furthest = 0.;
-        double *x        = moved.begin();
-        for (unsigned int v = 0; v < n; ++v)
-          {
-            Tensor<1, dim> way = from_held[v];
-            for (unsigned int i = first_link[v]; i < first_link[v + 1]; ++i)
-              for (unsigned int c = 0; c < dim; ++c)
-                way[c] += links[i].first * x[links[i].second + c];
+        double     furthest = 0.;
+        double    *x        = moved.begin();
+        const auto advance  = [&](const unsigned int v) {
+          Tensor<1, dim> way = from_held[v];
+          for (unsigned int i = first_link[v]; i < first_link[v + 1]; ++i)
             for (unsigned int c = 0; c < dim; ++c)
-              way[c] -= x[v * dim + c];
-            const double rest = way.norm() / local_size[v];
-            // A number that is none is never close.
-            if (!(rest <= furthest))
-              furthest =
-                std::isnan(rest) ? std::numeric_limits<double>::max() : rest;
-            steps[v] = keep * steps[v] + gain * way;
-          }
+              way[c] += links[i].first * x[links[i].second + c];
+          for (unsigned int c = 0; c < dim; ++c)
+            way[c] -= x[v * dim + c];
+          const double rest = way.norm() / local_size[v];
+          // A number that is none is never close.
+          if (!(rest <= furthest))
+            furthest =
+              std::isnan(rest) ? std::numeric_limits<double>::max() : rest;
+          steps[v] = keep * steps[v] + gain * way;
+        };
+        // Those that need no ghosts while these are on their way
+        moved.update_ghost_values_start();
+        for (const unsigned int v : inner)
+          advance(v);
+        moved.update_ghost_values_finish();
+        for (const unsigned int v : at_ghosts)
+          advance(v);
         for (unsigned int v = 0; v < n; ++v)
           for (unsigned int c = 0; c < dim; ++c)
             x[v * dim + c] += steps[v][c];

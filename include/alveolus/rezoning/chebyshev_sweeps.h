@@ -80,7 +80,9 @@ namespace alveolus
     // Where they are swept, by equal numbers of nodes:
     std::vector<unsigned int> first_link; ///< of each node, and the end
     std::vector<std::pair<double, unsigned int>> links; ///< local, of x
-    std::shared_ptr<const Partitioner>           swept; ///< ghosts: neighbours
+    std::vector<unsigned int>          inner; ///< nodes without links to ghosts
+    std::vector<unsigned int>          at_ghosts; ///< the other ones
+    std::shared_ptr<const Partitioner> swept;     ///< ghosts: neighbours
     /** The same nodes; ghosts: those on this process in the mesh. */
     std::shared_ptr<const Partitioner> to_mesh;
     double smallest_eigenvalue = 0., largest_eigenvalue = 2.;
