@@ -7,9 +7,11 @@ WAYS = {"swept": "same connectivity", "overlap": "between meshes"}
 
 @case("Transfer", short=False)
 def suite(book):
-    found = book.runner.unit_test(
-        "transfer_second_order", "LimitedLinear.*",
-        () if book.short else (("ALVEOLUS_FINE_TRANSFER", "1"),))
+    found = {}
+    for name in ("transfer_second_order", "transfer_limited"):
+        found.update(book.runner.unit_test(
+            name, "LimitedLinear.*",
+            () if book.short else (("ALVEOLUS_FINE_TRANSFER", "1"),)))
     linear = found["LimitedLinear.LinearFieldIsExact"]
     book.below("linear field of sub-cell means, affine moves, order 2, largest relative "
                "error (2D, 3D, degree 1, 2)", "linear functions are reproduced",

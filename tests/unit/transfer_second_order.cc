@@ -1,30 +1,25 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // mpirun=2
-// Transfer schemes of first and second order, on the same connectivity and by
-// overlap: the same tests for both.
-#include <alveolus/base/tensors.h>
-#include <alveolus/state/reproducible_sum.h>
-#include <alveolus/transfer/overlap_transfer.h>
-#include <alveolus/transfer/reconstruction.h>
-#include <alveolus/transfer/swept_transfer.h>
+// Accuracy of transfer schemes of first and second order, on the same
+// connectivity and by overlap: what linear fields, turned scenes, shifts and a
+// smooth field dictate. scripts/verify takes numbers from here.
+#include "two_ways_problem.h"
 
-#include <deal.II/base/timer.h>
-#include <deal.II/grid/grid_generator.h>
+#include <alveolus/state/reproducible_sum.h>
+#include <alveolus/transfer/reconstruction.h>
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 
 using namespace dealii;
 using namespace alveolus;
+using namespace alveolus::bench;
 
 namespace
 {
-  using Shape = HistoryField::Shape;
-
-  const std::string first = "Godunov", second = "limited linear";
-
   /** A number for the report of the test, from which scripts/verify takes it.
    */
   void
@@ -34,218 +29,6 @@ namespace
     text << std::setprecision(16) << value;
     testing::Test::RecordProperty(key, text.str());
   }
-
-  /** How the history gets to the new positions. */
-  enum class Way
-  {
-    swept,
-    overlap
-  };
-
-  /** A number in [-1,1] without pattern, the same on every process. */
-  template <int dim>
-  double
-  noise(const Point<dim> &x, const unsigned int seed)
-  {
-    double sum = 0.7 * seed;
-    for (unsigned int d = 0; d < dim; ++d)
-      sum += (12.9898 + 31.4 * d + seed) * std::round(x[d] * 1e6) * 1e-6;
-    const double y = std::sin(sum) * 437.5453;
-    return 2. * (y - std::floor(y)) - 1.;
-  }
-
-  constexpr double fabric_bound = 20.;
-
-  template <int dim>
-  HistoryLayout
-  bone_layout()
-  {
-    HistoryField density;
-    density.name  = "density";
-    density.lower = 0.3;
-    density.upper = 1.9;
-    HistoryField elastic;
-    elastic.name  = "elastic strain";
-    elastic.shape = Shape::symmetric_tensor;
-    HistoryField fabric;
-    fabric.name      = "log fabric";
-    fabric.shape     = Shape::symmetric_tensor;
-    fabric.traceless = true;
-    fabric.lower     = -fabric_bound;
-    fabric.upper     = fabric_bound;
-    return HistoryLayout({density, elastic, fabric}, dim);
-  }
-
-  /** What a move did, by either transfer. */
-  struct Moved
-  {
-    double       content_before, content_after, through_boundary;
-    unsigned int n_limited;
-  };
-
-  /** Mesh, configuration and history; moves it by either transfer. */
-  template <int dim>
-  struct Problem
-  {
-    using Grid     = parallel::distributed::Triangulation<dim>;
-    using Function = std::function<Tensor<1, dim>(const Point<dim> &)>;
-
-    Problem(const Way                          way,
-            const std::string                 &scheme,
-            const unsigned int                 degree,
-            const std::function<void(Grid &)> &make_grid,
-            const MPI_Comm                     communicator   = MPI_COMM_WORLD,
-            const double                       donor_fraction = 0.5)
-      : way(way)
-      , scheme(scheme)
-    {
-      mesh.triangulation = std::make_unique<Grid>(communicator);
-      make_grid(*mesh.triangulation);
-      configuration = std::make_unique<Configuration<dim>>(mesh, degree);
-      store         = make_store();
-      transfer      = std::make_unique<SweptTransfer<dim>>(
-        *configuration,
-        *store,
-        Registry<TransferScheme<dim>>::create(scheme, "Scheme"),
-        "density",
-        donor_fraction);
-    }
-
-    std::unique_ptr<HistoryStore<dim>>
-    make_store() const
-    {
-      return std::make_unique<HistoryStore<dim>>(
-        *mesh.triangulation,
-        std::map<types::material_id, unsigned int>{{0, 0}, {1, 1}},
-        std::vector<HistoryLayout>{bone_layout<dim>(), bone_layout<dim>()},
-        Utilities::pow(configuration->degree + 1, dim));
-    }
-
-    /** f at the initial positions of the nodes. */
-    NodalVector
-    positions(const Function &f) const
-    {
-      NodalVector          result = configuration->make_vector();
-      const CellNodes<dim> nodes(*configuration);
-      result.zero_out_ghost_values();
-      typename CellNodes<dim>::NodeTensors position;
-      for (const unsigned int c : transfer->subcells().owned_cells())
-        {
-          nodes.gather(configuration->initial_positions(), c, position);
-          for (unsigned int i = 0; i < nodes.n_nodes; ++i)
-            {
-              const Tensor<1, dim> value = f(Point<dim>(position[i]));
-              for (unsigned int d = 0; d < dim; ++d)
-                if (nodes.local_entries(c, i)[d] < result.locally_owned_size())
-                  result.local_element(nodes.local_entries(c, i)[d]) = value[d];
-            }
-        }
-      result.update_ghost_values();
-      return result;
-    }
-
-    /** Move mesh and history to @p x. */
-    Moved
-    move(const NodalVector &x)
-    {
-      if (way == Way::swept)
-        {
-          const TransferReport r =
-            transfer->transfer(*store, configuration->positions(), x);
-          configuration->set_positions(x);
-          return {r.content_before,
-                  r.content_after,
-                  r.through_boundary,
-                  r.n_limited};
-        }
-      const OverlapTransfer<dim> overlap(*configuration, *store, scheme);
-      std::unique_ptr<HistoryStore<dim>> next = make_store();
-      configuration->set_positions(x);
-      const OverlapReport r = overlap.transfer(*configuration, *next);
-      store->old_values     = next->old_values;
-      return {r.content_before(), r.content_after(), 0., r.n_limited};
-    }
-
-    /** Go over owned sub-cells: centroid, volume, record. */
-    void
-    for_each(
-      const std::function<void(const Point<dim> &, double, double *)> &f) const
-    {
-      std::vector<Point<dim>> centroid;
-      std::vector<double>     volume;
-      transfer->subcells().centroids(configuration->positions(),
-                                     centroid,
-                                     volume);
-      for (const unsigned int c : transfer->subcells().owned_cells())
-        for (unsigned int q = 0; q < store->n_points; ++q)
-          f(centroid[c * store->n_points + q],
-            volume[c * store->n_points + q],
-            store->old_record(c, q));
-    }
-
-    /** Random records; the fabric is at its bounds in many places. */
-    void
-    fill_noise()
-    {
-      for_each([this](const Point<dim> &p, double, double *r) {
-        for (unsigned int k = 0; k < store->layout(0).size; ++k)
-          r[k] = noise(p, k);
-        r[0]           = 1.1 + 0.8 * r[0];
-        double *fabric = r + store->layout(0).offset("log fabric");
-        pack(tensor_function(unpack(fabric, dim),
-                             [](const double value) {
-                               return std::min(fabric_bound,
-                                               std::max(-fabric_bound,
-                                                        40. * value));
-                             }),
-             fabric,
-             dim);
-      });
-    }
-
-    Way                                 way;
-    std::string                         scheme;
-    Mesh<dim>                           mesh;
-    std::unique_ptr<Configuration<dim>> configuration;
-    std::unique_ptr<HistoryStore<dim>>  store;
-    std::unique_ptr<SweptTransfer<dim>> transfer;
-  };
-
-  template <int dim>
-  std::function<void(parallel::distributed::Triangulation<dim> &)>
-  cube(const unsigned int n)
-  {
-    return [n](parallel::distributed::Triangulation<dim> &t) {
-      GridGenerator::subdivided_hyper_cube(t, n);
-    };
-  }
-
-  template <int dim>
-  void
-  ball(parallel::distributed::Triangulation<dim> &t)
-  {
-    GridGenerator::hyper_ball_balanced(t);
-    t.refine_global(dim == 2 ? 2 : 1);
-  }
-
-  /** Interior nodes of [0,1]^dim by noise of size @p size. */
-  template <int dim>
-  std::function<Tensor<1, dim>(const Point<dim> &)>
-  shaken(const double size, const unsigned int seed = 1)
-  {
-    return [=](const Point<dim> &p) {
-      Tensor<1, dim> x = p;
-      for (unsigned int d = 0; d < dim; ++d)
-        if (p[d] > 1e-10 && p[d] < 1. - 1e-10)
-          x[d] += size * noise(p, 3 * seed + d);
-      return x;
-    };
-  }
-
-  template <int dim>
-  constexpr unsigned int n_cells = dim == 2 ? 8 : 4;
-
-  constexpr Way both_ways[] = {Way::swept, Way::overlap};
 
   /** Linear in x, another function for each value. */
   template <int dim>
@@ -294,42 +77,6 @@ TEST(Reconstruction, GradientOfLinearField)
 {
   gradient_is_exact<2>();
   gradient_is_exact<3>();
-}
-
-// Every scheme: a uniform state to the last bit.
-template <int dim>
-void
-uniform_state_stays(const unsigned int degree)
-{
-  for (const Way way : both_ways)
-    {
-      if (way == Way::overlap && dim == 3 && degree == 2)
-        continue; // slow
-      Problem<dim> s(way, second, degree, &ball<dim>);
-      s.for_each([](const Point<dim> &, double, double *r) {
-        for (unsigned int k = 0; k < bone_layout<dim>().size; ++k)
-          r[k] = 0.4 + 0.0317 * k;
-      });
-      for (unsigned int step = 0; step < (dim == 2 && degree == 1 ? 20 : 2);
-           ++step)
-        s.move(s.positions([=](const Point<dim> &p) {
-          Tensor<1, dim> x = p;
-          for (unsigned int d = 0; d < dim; ++d)
-            x[d] += 0.01 / degree * noise(p, d + step);
-          return x;
-        }));
-      s.for_each([](const Point<dim> &, double, const double *r) {
-        for (unsigned int k = 0; k < bone_layout<dim>().size; ++k)
-          EXPECT_EQ(r[k], 0.4 + 0.0317 * k);
-      });
-    }
-}
-
-TEST(LimitedLinear, UniformStateStaysToTheLastBit)
-{
-  uniform_state_stays<2>(1);
-  uniform_state_stays<2>(2);
-  uniform_state_stays<3>(1);
 }
 
 // A linear field of means stays that linear field. No old mean may be exceeded,
@@ -504,111 +251,6 @@ TEST(LimitedLinear, TurnedScene)
   turned<2>(first, 1);
 }
 
-// Content to round-off, and no new extrema of scalars and norms of tensors,
-// through many motions of a field without any smoothness.
-template <int dim>
-void
-content_and_bounds(const unsigned int degree)
-{
-  for (const Way way : both_ways)
-    for (const double donor_fraction : {0.5, 0.04})
-      {
-        if (way == Way::overlap && donor_fraction < 0.5)
-          continue;
-        Problem<dim>       s(way,
-                       second,
-                       degree,
-                       cube<dim>(n_cells<dim>),
-                       MPI_COMM_WORLD,
-                       donor_fraction);
-        const unsigned int n    = n_values(Shape::symmetric_tensor, dim);
-        const auto         norm = [&](const double *t) {
-          return unpack(t, dim).norm();
-        };
-        s.fill_noise();
-        double low = 1e9, high = 0., largest_norm[2] = {0., 0.};
-        s.for_each([&](const Point<dim> &, double, double *r) {
-          low  = std::min(low, r[0]);
-          high = std::max(high, r[0]);
-          for (unsigned int i = 0; i < 2; ++i)
-            largest_norm[i] = std::max(largest_norm[i], norm(r + 1 + i * n));
-        });
-        low  = Utilities::MPI::min(low, MPI_COMM_WORLD);
-        high = Utilities::MPI::max(high, MPI_COMM_WORLD);
-        for (double &l : largest_norm)
-          l = Utilities::MPI::max(l, MPI_COMM_WORLD);
-        for (unsigned int step = 0; step < (dim == 2 ? 10 : 3); ++step)
-          {
-            const Moved moved = s.move(
-              s.positions(shaken<dim>(0.2 / n_cells<dim> / degree, step)));
-            EXPECT_NEAR(moved.content_after / moved.content_before, 1., 1e-13);
-            EXPECT_EQ(moved.n_limited, 0u);
-          }
-        s.for_each([&](const Point<dim> &, double, double *r) {
-          EXPECT_GE(r[0], low - 1e-14);
-          EXPECT_LE(r[0], high + 1e-14);
-          for (unsigned int i = 0; i < 2; ++i)
-            EXPECT_LE(norm(r + 1 + i * n), largest_norm[i] * (1. + 1e-14));
-          for (const double value : spectral(unpack(r + 1 + n, dim)).values)
-            EXPECT_LE(std::abs(value), fabric_bound * (1. + 1e-14));
-        });
-      }
-}
-
-TEST(LimitedLinear, ContentAndBounds)
-{
-  content_and_bounds<2>(1);
-  content_and_bounds<2>(2);
-  content_and_bounds<3>(1);
-}
-
-// A thousand transfers with values at their bounds: nothing has to be brought
-// back into bounds.
-TEST(LimitedLinear, ThousandTransfers)
-{
-  Problem<2> s(Way::swept, second, 1, cube<2>(5));
-  s.fill_noise();
-  s.for_each([](const Point<2> &p, double, double *r) {
-    r[0] = noise(p, 1) > 0. ? 1.9 : 0.3;
-  });
-  double start = 0.;
-  for (unsigned int step = 0; step < 1000; ++step)
-    {
-      const Moved moved = s.move(s.positions(shaken<2>(0.02, step)));
-      if (step == 0)
-        start = moved.content_before;
-      EXPECT_EQ(moved.n_limited, 0u);
-      EXPECT_NEAR(moved.content_after / start, 1., 1e-13);
-    }
-  s.for_each([](const Point<2> &, double, const double *r) {
-    EXPECT_GE(r[0], 0.3);
-    EXPECT_LE(r[0], 1.9);
-    const auto fabric = spectral(unpack(r + 5, 2)).values;
-    EXPECT_LE(fabric[0], fabric_bound * (1. + 1e-12));
-    EXPECT_GE(fabric[2], -fabric_bound * (1. + 1e-12));
-  });
-}
-
-// Tensors that are multiples of one tensor are limited like the scalar.
-TEST(LimitedLinear, TensorsLikeScalars)
-{
-  for (const Way way : both_ways)
-    {
-      Problem<2> s(way, second, 1, cube<2>(8));
-      s.for_each([](const Point<2> &p, double, double *r) {
-        r[0] = 1.1 + 0.7 * noise(p, 1);
-        for (unsigned int k = 1; k < 9; ++k)
-          r[k] = (k - 3.3) * r[0];
-      });
-      for (unsigned int step = 1; step < 6; ++step)
-        s.move(s.positions(shaken<2>(0.02, step)));
-      s.for_each([](const Point<2> &, double, const double *r) {
-        for (unsigned int k = 1; k < 9; ++k)
-          EXPECT_NEAR(r[k], (k - 3.3) * r[0], 1e-13);
-      });
-    }
-}
-
 // The mesh moves by one sub-cell: at the same place the same value.
 TEST(LimitedLinear, ExactShift)
 {
@@ -723,102 +365,4 @@ TEST(LimitedLinear, ObservedOrder)
         record(key + "drift", largest_drift);
         record(key + "beyond", beyond);
       }
-}
-
-// Regions never mix, and the reconstruction does not look across.
-template <int dim>
-void
-two_regions()
-{
-  for (const Way way : both_ways)
-    {
-      Problem<dim> s(way,
-                     second,
-                     1,
-                     [](parallel::distributed::Triangulation<dim> &t) {
-                       cube<dim>(n_cells<dim>)(t);
-                       for (const auto &cell : t.active_cell_iterators())
-                         cell->set_material_id(cell->center()[0] < 0.5 ? 0 : 1);
-                     });
-      const auto   region = [](const Point<dim> &p) { return p[0] < 0.5; };
-      s.for_each([&](const Point<dim> &p, double, double *r) {
-        r[0] = region(p) ? 1.7 : 0.4;
-      });
-      s.move(s.positions([&](const Point<dim> &p) {
-        if (std::abs(p[0] - 0.5) < 1e-10)
-          return Tensor<1, dim>(p);
-        return shaken<dim>(0.2 / n_cells<dim>)(p);
-      }));
-      s.for_each([&](const Point<dim> &p, double, const double *r) {
-        EXPECT_EQ(r[0], region(p) ? 1.7 : 0.4);
-      });
-    }
-}
-
-TEST(LimitedLinear, RegionsNeverMix)
-{
-  two_regions<2>();
-  two_regions<3>();
-}
-
-// Same bits on one process and on all of them.
-template <int dim>
-void
-same_on_any_number_of_processes(const unsigned int degree)
-{
-  for (const Way way : both_ways)
-    {
-      std::map<std::string, std::vector<double>> reference;
-      for (const MPI_Comm communicator : {MPI_COMM_SELF, MPI_COMM_WORLD})
-        {
-          Problem<dim> s(
-            way, second, degree, cube<dim>(n_cells<dim>), communicator);
-          s.fill_noise();
-          for (unsigned int step = 1; step < 3; ++step)
-            s.move(s.positions(shaken<dim>(0.2 / n_cells<dim> / degree, step)));
-          for (const auto &cell : s.mesh.triangulation->active_cell_iterators())
-            if (cell->is_locally_owned())
-              {
-                const double *begin =
-                  s.store->old_record(cell->active_cell_index(), 0);
-                const std::vector<double> values(
-                  begin, begin + s.store->n_points * s.store->layout(0).size);
-                if (communicator == MPI_COMM_SELF)
-                  reference[cell->id().to_string()] = values;
-                else
-                  EXPECT_EQ(values, reference.at(cell->id().to_string()));
-              }
-        }
-    }
-}
-
-TEST(LimitedLinear, SameOnAnyNumberOfProcesses)
-{
-  same_on_any_number_of_processes<2>(1);
-  same_on_any_number_of_processes<2>(2);
-  same_on_any_number_of_processes<3>(1);
-}
-
-// Not a check but a measurement: one transfer of about 1000 cells.
-TEST(LimitedLinear, Cost)
-{
-  for (const Way way : both_ways)
-    for (const std::string &scheme : {first, second})
-      for (const unsigned int degree : {1, 2})
-        {
-          Problem<2> s(way, scheme, degree, cube<2>(32));
-          s.fill_noise();
-          double best = 1e9;
-          for (unsigned int i = 0; i < (way == Way::swept ? 6 : 2); ++i)
-            {
-              const NodalVector x = s.positions(shaken<2>(0.001, i));
-              Timer             timer;
-              s.move(x);
-              best = std::min(best, timer.wall_time());
-            }
-          if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-            std::cout << (way == Way::swept ? "swept" : "overlap") << ", "
-                      << scheme << ", 1024 cells of degree " << degree << ": "
-                      << 1e3 * best << " ms" << std::endl;
-        }
 }
