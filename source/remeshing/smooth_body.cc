@@ -390,11 +390,37 @@ namespace alveolus
 
 
 
+  // Normal curvature in the directions of the edges of the faces, by the turn
+  // of the fitted normals
+  std::vector<double>
+  SmoothBody::curvatures() const
+  {
+    std::vector<double> result(body.n_nodes(), 0.);
+    for (const auto &face : body.faces)
+      for (const unsigned int part : patch_parts[face.patch])
+        for (unsigned int i = 0; i < 4; ++i)
+          {
+            const auto        &normal = normals.at({face.patch, part});
+            const auto        &x      = body.places[part];
+            const unsigned int a = face.nodes[i], b = face.nodes[(i + 1) % 4];
+            // Of a plane 0 in spite of round-off, unlike the arc cosine
+            const double turn =
+              2. * std::asin(
+                     std::min(1., 0.5 * (normal.at(a) - normal.at(b)).norm()));
+            for (const unsigned int v : {a, b})
+              result[v] = std::max(result[v], turn / x[a].distance(x[b]));
+          }
+    return result;
+  }
+
+
+
   void
   SmoothBody::set_sizes(const double factor,
                         const double smallest,
                         const double largest,
-                        const double growth)
+                        const double growth,
+                        const double largest_turn)
   {
     const unsigned int                    n = body.n_nodes();
     std::map<SurfaceEdge, double>         lengths;
@@ -414,9 +440,14 @@ namespace alveolus
               }
         }
     sizes.assign(n, 0.);
+    const std::vector<double> curvature = curvatures();
     for (unsigned int v = 0; v < n; ++v)
-      sizes[v] =
-        std::min(largest, std::max(smallest, factor * sum[v] / count[v]));
+      {
+        double wanted = factor * sum[v] / count[v];
+        if (largest_turn < curvature[v] * wanted)
+          wanted = largest_turn / curvature[v];
+        sizes[v] = std::min(largest, std::max(smallest, wanted));
+      }
     // Within each part: all pairs, since the way may lead through the inside
     for (unsigned int p = 0; p < body.is_in.size(); ++p)
       {
