@@ -45,13 +45,14 @@ namespace alveolus
         "Edge angle",
         edge_angle,
         "Wanted edges are so short that the surface turns by no "
-        "more than this along them; edges may become 4/3 times "
-        "as long [degree]. Ends of a root, say, keep edges that "
-        "see them where `Edge length factor` is large.",
+        "more than this along them, so that a round end stays "
+        "round where `Edge length factor` is large; edges may "
+        "become 4/3 times as long as wanted [degree].",
         Patterns::Double(1., 180.));
       prm.add_parameter("Smallest edge length",
                         smallest,
-                        "Bound of the wanted edges [mm].",
+                        "Bound of the wanted edges, also of those that `Edge "
+                        "angle` asks for [mm].",
                         Patterns::Double(0.));
       prm.add_parameter("Largest edge length",
                         largest,
@@ -69,7 +70,8 @@ namespace alveolus
                         Patterns::Double(1., 180.));
       prm.add_parameter("Good quality",
                         good,
-                        "Corners below this scaled Jacobian are improved by "
+                        "Corners below this scaled Jacobian, or outside layers "
+                        "below this mean ratio of their edges, are improved by "
                         "moving nodes [-].",
                         Patterns::Double(0., 1.));
       prm.add_parameter("Sweeps",
