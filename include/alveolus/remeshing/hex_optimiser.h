@@ -15,8 +15,8 @@ namespace alveolus
      * Mean ratio 3 det^(2/3)/(|a|^2 + |b|^2 + |c|^2) of the edges a, b, c
      * with the sign of the determinant: small also where one of the edges is
      * much shorter than the others. A value s bounds the ratio r of the
-     * shortest to the longest edge of the corner: s <= 3 r^(2/3)/(2 + r^2). Of
-     * cells in layers, which are thin, it is 1.
+     * shortest to the longest edge of the corner: s <= (2 r/(1 + r^2))^(2/3).
+     * Of cells in layers, which are thin, it is 1.
      */
     double shape = 1.;
   };
@@ -33,10 +33,10 @@ namespace alveolus
    * Move nodes so that bad corners become better: each in turn goes down the
    * slope of
    *
-   *   sum over the corners it changes of max(0, good - q)^4 + max(0, good -
-   * s)^4,
+   *   sum max(0, good - q)^4 + max(0, good - s)^4
    *
-   * q and s the scaled Jacobian and the shape of the corner, nodes inside
+   * over the corners it changes,
+   * q and s the scaled Jacobian and the shape of a corner, nodes inside
    * anywhere, those on patches along these, those in layers with the point on
    * the patch they belong to. Nodes on curves stay. A step that does not lower
    * the sum is halved. By q alone edges may shrink to nothing between good
