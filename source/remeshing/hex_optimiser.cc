@@ -38,13 +38,18 @@ namespace alveolus
           }
       }
 
-      double
+      /** The smallest values of all corners. */
+      HexQuality
       smallest() const
       {
-        double result = 1.;
+        HexQuality result;
         for (unsigned int c = 0; c < mesh.description.cells.size(); ++c)
           for (unsigned int k = 0; k < 8; ++k)
-            result = std::min(result, quality(c, k));
+            {
+              const HexQuality is = corner(c, k);
+              result.jacobian     = std::min(result.jacobian, is.jacobian);
+              result.shape        = std::min(result.shape, is.shape);
+            }
         return result;
       }
 
@@ -87,8 +92,15 @@ namespace alveolus
         return {result.begin(), result.end()};
       }
 
-      double
-      quality(const unsigned int c, const unsigned int k) const
+      /** Cells of layers are thin; they have no node inside a part. */
+      bool
+      is_thin(const unsigned int c) const
+      {
+        return !mesh.is_inside[mesh.description.cells[c].vertices[7]];
+      }
+
+      HexQuality
+      corner(const unsigned int c, const unsigned int k) const
       {
         const auto        &v  = mesh.description.cells[c].vertices;
         const Point<3>    &at = x[v[k]];
@@ -96,10 +108,17 @@ namespace alveolus
                            d = x[v[k ^ 4]] - at;
         // Towards smaller coordinates edges point the other way
         const int    sign = ((k ^ (k >> 1) ^ (k >> 2)) & 1) != 0 ? -1 : 1;
-        const double lengths =
-          std::sqrt(a.norm_square() * b.norm_square() * d.norm_square());
-        return lengths > 0. ? sign * (cross_product_3d(a, b) * d) / lengths
-                            : -1.;
+        const double aa = a.norm_square(), bb = b.norm_square(),
+                     dd      = d.norm_square();
+        const double lengths = std::sqrt(aa * bb * dd);
+        if (!(lengths > 0.))
+          return {-1., -1.};
+        const double det  = sign * (cross_product_3d(a, b) * d);
+        const double size = std::cbrt(det);
+        return {det / lengths,
+                is_thin(c)
+                  ? 1.
+                  : std::copysign(3. * size * size / (aa + bb + dd), det)};
       }
 
       double
@@ -108,9 +127,10 @@ namespace alveolus
         double sum = 0.;
         for (const auto &[c, k] : corners)
           {
-            const double lack = good - quality(c, k);
-            if (lack > 0.)
-              sum += lack * lack * lack * lack;
+            const HexQuality is = corner(c, k);
+            for (const double value : {is.jacobian, is.shape})
+              if (value < good)
+                sum += std::pow(good - value, 4);
           }
         return sum;
       }

@@ -387,48 +387,4 @@ namespace alveolus
       result += place.weights[i] * sizes[triangles[place.triangle].nodes[i]];
     return result;
   }
-
-
-
-  void
-  SmoothBody::set_sizes(const double factor,
-                        const double smallest,
-                        const double largest,
-                        const double growth)
-  {
-    const unsigned int                    n = body.n_nodes();
-    std::map<SurfaceEdge, double>         lengths;
-    std::vector<double>                   sum(n, 0.);
-    std::vector<unsigned int>             count(n, 0);
-    std::vector<std::vector<SurfaceEdge>> neighbours(n);
-    for (const auto &face : body.faces)
-      for (unsigned int i = 0; i < 4; ++i)
-        {
-          const unsigned int a = face.nodes[i], b = face.nodes[(i + 1) % 4];
-          const auto        &x = body.places[body.part(face)];
-          if (lengths.emplace(surface_edge(a, b), x[a].distance(x[b])).second)
-            for (const unsigned int v : {a, b})
-              {
-                sum[v] += x[a].distance(x[b]);
-                ++count[v];
-              }
-        }
-    sizes.assign(n, 0.);
-    for (unsigned int v = 0; v < n; ++v)
-      sizes[v] =
-        std::min(largest, std::max(smallest, factor * sum[v] / count[v]));
-    // Within each part: all pairs, since the way may lead through the inside
-    for (unsigned int p = 0; p < body.is_in.size(); ++p)
-      {
-        const std::vector<double> before(sizes);
-        for (unsigned int i = 0; i < n; ++i)
-          if (body.is_in[p][i])
-            for (unsigned int j = 0; j < n; ++j)
-              if (body.is_in[p][j] && before[j] < sizes[i])
-                sizes[i] =
-                  std::min(sizes[i],
-                           before[j] + growth * body.places[p][i].distance(
-                                                  body.places[p][j]));
-      }
-  }
 } // namespace alveolus

@@ -41,9 +41,18 @@ namespace alveolus
                         "Wanted edges of the surface over the mean of the old "
                         "edges there [-].",
                         Patterns::Double(0.05, 20.));
+      prm.add_parameter(
+        "Edge angle",
+        edge_angle,
+        "Wanted edges are so short that the surface turns by no "
+        "more than this along them, so that a round end stays "
+        "round where `Edge length factor` is large; edges may "
+        "become 4/3 times as long as wanted [degree].",
+        Patterns::Double(1., 180.));
       prm.add_parameter("Smallest edge length",
                         smallest,
-                        "Bound of the wanted edges [mm].",
+                        "Bound of the wanted edges, also of those that `Edge "
+                        "angle` asks for [mm].",
                         Patterns::Double(0.));
       prm.add_parameter("Largest edge length",
                         largest,
@@ -61,7 +70,8 @@ namespace alveolus
                         Patterns::Double(1., 180.));
       prm.add_parameter("Good quality",
                         good,
-                        "Corners below this scaled Jacobian are improved by "
+                        "Corners below this scaled Jacobian, or outside layers "
+                        "below this mean ratio of their edges, are improved by "
                         "moving nodes [-].",
                         Patterns::Double(0., 1.));
       prm.add_parameter("Sweeps",
@@ -115,7 +125,11 @@ namespace alveolus
         extract_surface(mesh, thin, corner_angle * numbers::PI / 180., where);
       SmoothBody smooth(surface);
       // Triangles become quads of half the edge
-      smooth.set_sizes(2. * factor, 2. * smallest, 2. * largest, growth);
+      smooth.set_sizes(2. * factor,
+                       2. * smallest,
+                       2. * largest,
+                       growth,
+                       2. * edge_angle * numbers::PI / 180.);
       SurfaceMesh triangles(smooth);
       triangles.remesh(n_rounds);
 
@@ -156,7 +170,8 @@ namespace alveolus
     static constexpr unsigned int n_rounds = 8; ///< of the surface remesher
 
     std::vector<std::string> layers;
-    double                   factor   = 1.;
+    double                   factor     = 1.;
+    double                   edge_angle = 180.;            ///< [degree]
     double                   smallest = 0., largest = 1e6; ///< [mm]
     double                   growth       = 0.3;
     double                   corner_angle = 40.; ///< [degree]
@@ -209,7 +224,7 @@ namespace alveolus
 
       RemeshCandidate<3> candidate;
       candidate.mesh    = build_mesh(hexes.description, old.communicator());
-      candidate.quality = report.after;
+      candidate.quality = report.after.jacobian;
       std::ostringstream text;
       text << job.name << ": " << hexes.description.cells.size() << " cells, "
            << hexes.description.vertices.size() << " vertices, of "
@@ -218,8 +233,10 @@ namespace alveolus
            << n_tetrahedra << " tetrahedra (algorithm " << with.algorithm
            << ", size factor " << with.size_factor << ", " << flat.n_divided
            << " flat ones divided, " << flat.n_left
-           << " left), smallest scaled Jacobian " << report.before << ", after "
-           << report.n_sweeps << " sweeps " << report.after;
+           << " left), smallest scaled Jacobian " << report.before.jacobian
+           << " (shape " << report.before.shape << "), after "
+           << report.n_sweeps << " sweeps " << report.after.jacobian
+           << " (shape " << report.after.shape << ")";
       candidate.describe(text.str());
       return candidate;
     }

@@ -352,6 +352,89 @@ TEST(VolumeRemesher, OrdersOnACylinder)
 
 
 
+// Chords of an arc of the angle a leave a cylinder of radius r by
+// r (1 - cos(a/2)); edges wanted at 10 degrees become 4/3 times as long.
+TEST(VolumeRemesher, EdgeAngleBoundsTheChordsOfACylinder)
+{
+  const Body     body(vault(6));
+  const Settings coarse{{"Attempts", "1"}, {"Edge length factor", "5"}};
+  double         turn[2] = {0., 0.}, sagitta[2] = {0., 0.};
+  for (unsigned int k = 0; k < 2; ++k)
+    {
+      Settings settings = coarse;
+      if (k == 1)
+        settings["Edge angle"] = "10";
+      const auto candidates =
+        remesh(body, settings, "edge-angle-" + std::to_string(k));
+      const Mesh<3> &mesh = candidates[0].mesh;
+      const auto    &roof = mesh.names.boundaries.at("roof");
+      for (const auto &cell : mesh.triangulation->cell_iterators_on_level(0))
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary() && roof.count(face->boundary_id()) != 0)
+            for (unsigned int l = 0; l < face->n_lines(); ++l)
+              {
+                const auto &line  = face->line(l);
+                const auto  angle = [](const Point<3> &x) {
+                  return std::atan2(x[0], x[2]);
+                };
+                const Point<3> middle = line->center();
+                turn[k]               = std::max(turn[k],
+                                   std::abs(angle(line->vertex(1)) -
+                                            angle(line->vertex(0))));
+                sagitta[k] =
+                  std::max(sagitta[k], 1. - std::hypot(middle[0], middle[2]));
+              }
+    }
+  const double largest = 4. / 3. * 10. * numbers::PI / 180.;
+  EXPECT_LT(turn[1], 1.02 * largest);
+  EXPECT_LT(sagitta[1], 1.02 * 1.02 * (1. - std::cos(0.5 * largest)));
+  EXPECT_GT(turn[0], 1.5 * largest) << "the bound had nothing to do";
+}
+
+
+
+// By the mean ratio s of a corner, its shortest edge over the longest one has
+// (2 r/(1 + r^2))^(2/3) >= s: good angles between edges of no length are not
+// good.
+TEST(VolumeRemesher, NoEdgeShrinksToNothing)
+{
+  const Body bodies[] = {Body(two_materials()), Body(vault(3)), Body(vault(6))};
+  for (unsigned int k = 0; k < 3; ++k)
+    {
+      const auto candidates =
+        remesh(bodies[k], {{"Attempts", "1"}}, "edges-" + std::to_string(k));
+      double shape = 1., ratio = 1.;
+      for (const auto &cell :
+           candidates[0].mesh.triangulation->cell_iterators_on_level(0))
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            std::array<Tensor<1, 3>, 3> edge;
+            double                      squares = 0.;
+            for (unsigned int d = 0; d < 3; ++d)
+              {
+                edge[d] = cell->vertex(v ^ (1u << d)) - cell->vertex(v);
+                squares += edge[d].norm_square();
+              }
+            const double volume =
+              std::abs(cross_product_3d(edge[0], edge[1]) * edge[2]);
+            const double s = 3. * std::cbrt(volume * volume) / squares;
+            const auto [least, most] =
+              std::minmax({edge[0].norm(), edge[1].norm(), edge[2].norm()});
+            const double r = least / most;
+            EXPECT_LE(s, std::pow(2. * r / (1. + r * r), 2. / 3.) + 1e-12);
+            shape = std::min(shape, s);
+            ratio = std::min(ratio, r);
+          }
+      EXPECT_GT(shape, 0.3);
+      EXPECT_GT(ratio, 0.08); // what 0.3 leaves
+      if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        std::cout << "shape " << shape << ", ratio of edges " << ratio
+                  << std::endl;
+    }
+}
+
+
+
 // A uniform state stays to the last bit, contents of any other one to
 // round-off, with both schemes.
 TEST(VolumeRemesher, TransferConserves)

@@ -96,14 +96,16 @@ namespace alveolus
 
     /**
      * Wanted edge lengths: @p factor times the mean length of the edges of the
-     * surface at each node, within the bounds, and no more than s_j + growth
-     * |x_i - x_j| for all nodes j.
+     * surface at each node, but not so long that the surface turns by more than
+     * @p largest_turn [rad] along them, within the bounds, and no more than s_j
+     * + growth |x_i - x_j| for all nodes j.
      */
     void
     set_sizes(const double factor,
               const double smallest,
               const double largest,
-              const double growth);
+              const double growth,
+              const double largest_turn);
 
   private:
     using Normals = std::map<unsigned int, dealii::Tensor<1, 3>>; ///< by node
@@ -112,6 +114,9 @@ namespace alveolus
     divide_faces();
     void
     fit_normals();
+    /** Largest normal curvature of the patches at each node [1/mm]. */
+    std::vector<double>
+    curvatures() const;
     /** Knot interval and place in it. */
     std::pair<unsigned int, double>
     interval(const unsigned int curve, double u) const;
