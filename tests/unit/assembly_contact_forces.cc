@@ -2,6 +2,7 @@
 // Forces of contact without a solver: the matrix against differences, balance,
 // no attraction, multipliers on another mesh.
 #include "contact_bodies.h"
+#include "dense_system.h"
 
 #include <gtest/gtest.h>
 
@@ -15,43 +16,6 @@ using namespace alveolus::bench;
 
 namespace
 {
-  /** A matrix of all entries, no constraints, no solver. */
-  class DenseSystem : public LinearSystem
-  {
-  public:
-    explicit DenseSystem(const unsigned int n)
-      : matrix(n, n)
-    {}
-    void
-    clear() override
-    {
-      matrix = 0.;
-    }
-    void
-    add(const FullMatrix<double>                   &cell_matrix,
-        const std::vector<types::global_dof_index> &dofs) override
-    {
-      for (unsigned int i = 0; i < dofs.size(); ++i)
-        for (unsigned int j = 0; j < dofs.size(); ++j)
-          matrix(dofs[i], dofs[j]) += cell_matrix(i, j);
-    }
-    void
-    compress() override
-    {}
-    void
-    solve(NodalVector &, const NodalVector &) override
-    {}
-    std::string
-    name() const override
-    {
-      return "dense";
-    }
-
-    FullMatrix<double> matrix;
-  };
-
-
-
   /** A block with a kinked top and a soft one pressed into it, 3 to 2 lines. */
   std::unique_ptr<Bodies>
   pressed_blocks(const unsigned int degree)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Load stiffness of pressure and interface against differences of forces;
 // resultants.
+#include "dense_system.h"
 #include "unit_body.h"
 
 #include <gtest/gtest.h>
@@ -13,43 +14,6 @@ using namespace alveolus::bench;
 
 namespace
 {
-  /** A matrix of all entries, no constraints, no solver. */
-  class DenseSystem : public LinearSystem
-  {
-  public:
-    explicit DenseSystem(const unsigned int n)
-      : matrix(n, n)
-    {}
-    void
-    clear() override
-    {
-      matrix = 0.;
-    }
-    void
-    add(const FullMatrix<double>                   &cell_matrix,
-        const std::vector<types::global_dof_index> &dofs) override
-    {
-      for (unsigned int i = 0; i < dofs.size(); ++i)
-        for (unsigned int j = 0; j < dofs.size(); ++j)
-          matrix(dofs[i], dofs[j]) += cell_matrix(i, j);
-    }
-    void
-    compress() override
-    {}
-    void
-    solve(NodalVector &, const NodalVector &) override
-    {}
-    std::string
-    name() const override
-    {
-      return "dense";
-    }
-
-    FullMatrix<double> matrix;
-  };
-
-
-
   /** Relative deviation of a condition's matrix from force differences. */
   template <int dim>
   double

@@ -2,6 +2,8 @@
 // mpirun=2
 // Loads of given total: resultants, moments, independence of the mesh, rigid
 // turns, load stiffness.
+#include "dense_system.h"
+
 #include <alveolus/assembly/distributed_force.h>
 #include <alveolus/base/errors.h>
 
@@ -16,6 +18,7 @@
 
 using namespace dealii;
 using namespace alveolus;
+using namespace alveolus::bench;
 
 namespace
 {
@@ -433,44 +436,6 @@ TEST(Loads, DeadLoadsDoNotDependOnTheMesh)
 }
 
 
-
-namespace
-{
-  /** A matrix of all entries, no constraints, no solver. */
-  class DenseSystem : public LinearSystem
-  {
-  public:
-    explicit DenseSystem(const unsigned int n)
-      : matrix(n, n)
-    {}
-    void
-    clear() override
-    {
-      matrix = 0.;
-    }
-    void
-    add(const FullMatrix<double>                   &cell_matrix,
-        const std::vector<types::global_dof_index> &dofs) override
-    {
-      for (unsigned int i = 0; i < dofs.size(); ++i)
-        for (unsigned int j = 0; j < dofs.size(); ++j)
-          matrix(dofs[i], dofs[j]) += cell_matrix(i, j);
-    }
-    void
-    compress() override
-    {}
-    void
-    solve(NodalVector &, const NodalVector &) override
-    {}
-    std::string
-    name() const override
-    {
-      return "dense";
-    }
-
-    FullMatrix<double> matrix;
-  };
-} // namespace
 
 // Follower loads: the matrix lacks only the derivative of the scaling, which is
 // a multiple of the load in every column and nothing in a rigid motion; and the

@@ -2,6 +2,8 @@
 // mpirun=2
 // Local refinement: transfers on meshes with hanging nodes, and the remesher
 // that makes them.
+#include "noise.h"
+
 #include <alveolus/base/errors.h>
 #include <alveolus/mesh/hanging_nodes.h>
 #include <alveolus/mesh/mesh_record.h>
@@ -16,21 +18,10 @@
 
 using namespace dealii;
 using namespace alveolus;
+using namespace alveolus::bench;
 
 namespace
 {
-  /** A number in [-1,1] without pattern, the same on every process. */
-  template <int dim>
-  double
-  noise(const Point<dim> &x, const unsigned int seed)
-  {
-    double sum = 0.7 * seed;
-    for (unsigned int d = 0; d < dim; ++d)
-      sum += (12.9898 + 31.4 * d + seed) * std::round(x[d] * 1e6) * 1e-6;
-    const double y = std::sin(sum) * 437.5453;
-    return 2. * (y - std::floor(y)) - 1.;
-  }
-
   template <int dim>
   Mesh<dim>
   cube(const unsigned int refinements)

@@ -2,6 +2,8 @@
 // mpirun=2
 // Nodal fields and boundary history moved with the mesh on the same
 // connectivity.
+#include "noise.h"
+
 #include <alveolus/base/errors.h>
 #include <alveolus/transfer/face_overlap.h>
 #include <alveolus/transfer/face_transfer.h>
@@ -15,21 +17,10 @@
 
 using namespace dealii;
 using namespace alveolus;
+using namespace alveolus::bench;
 
 namespace
 {
-  /** A number in [-1,1] without pattern, the same on every process. */
-  template <int dim>
-  double
-  noise(const Point<dim> &x, const unsigned int seed)
-  {
-    double sum = 0.7 * seed;
-    for (unsigned int d = 0; d < dim; ++d)
-      sum += (12.9898 + 31.4 * d + seed) * std::round(x[d] * 1e6) * 1e-6;
-    const double y = std::sin(sum) * 437.5453;
-    return 2. * (y - std::floor(y)) - 1.;
-  }
-
   template <int dim>
   struct Problem
   {

@@ -2,6 +2,8 @@
 // mpirun=2
 // Transfer between unrelated meshes: intersections of convex bodies, and what
 // constants, conservation, bounds and coincident nodes dictate.
+#include "noise.h"
+
 #include <alveolus/base/errors.h>
 #include <alveolus/geometry/convex_overlap.h>
 #include <alveolus/transfer/overlap_transfer.h>
@@ -14,22 +16,11 @@
 
 using namespace dealii;
 using namespace alveolus;
+using namespace alveolus::bench;
 
 namespace
 {
   using Shape = HistoryField::Shape;
-
-  /** A number in [-1,1] without pattern, the same on every process. */
-  template <int dim>
-  double
-  noise(const Point<dim> &x, const unsigned int seed)
-  {
-    double sum = 0.7 * seed;
-    for (unsigned int d = 0; d < dim; ++d)
-      sum += (12.9898 + 31.4 * d + seed) * std::round(x[d] * 1e6) * 1e-6;
-    const double y = std::sin(sum) * 437.5453;
-    return 2. * (y - std::floor(y)) - 1.;
-  }
 
   /** A scalar with bounds and a tensor. */
   template <int dim>
