@@ -234,10 +234,17 @@ namespace alveolus
       {
         fresh.conditions[i]->take_over(*model->conditions[i]);
         const FaceHistory<dim> *jumps = model->conditions[i]->face_history();
-        if (jumps != nullptr)
+        if (jumps == nullptr)
+          continue;
+        const FaceTransferReport carried =
           FaceOverlap<dim>(old.configuration, *jumps)
             .transfer(state.configuration,
                       *fresh.conditions[i]->face_history());
+        if (carried.n_beyond > 0)
+          log.note("  " + fresh.conditions[i]->where + ": " +
+                   std::to_string(carried.n_beyond) +
+                   " new parts of the boundary lie beyond the old one and take "
+                   "its nearest values");
       }
     result.seconds_transfer = clock.wall_time();
     result.before           = fresh.quality();

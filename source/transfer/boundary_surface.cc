@@ -300,9 +300,11 @@ namespace alveolus
   double
   BoundarySurface::transfer()
   {
-    constexpr double       largest_given = 0.5;
-    constexpr unsigned int most_parts    = 1000;
-    const double           given         = sweep(0., 1.);
+    // Up to 1 there are no new extrema; half keeps areas far from zero.
+    constexpr double largest_given = 0.5;
+    // More would be a way of hundreds of cells: a mistake of the rules
+    constexpr unsigned int most_parts = 1000;
+    const double           given      = sweep(0., 1.);
     if (!(given / largest_given < most_parts))
       throw RunError("Transfer",
                      "a sub-quadrilateral of a boundary that carries history "

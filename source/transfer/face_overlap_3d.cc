@@ -44,7 +44,12 @@ namespace alveolus
         return piece;
       }
 
-      /** Whether @p other may be the same part of a surface. */
+      /**
+       * Whether @p other may be the same part of a surface: within a cell of
+       * it, and turned by less than 60 degrees, which no two cells of a
+       * smooth surface are that lie on each other, but the other wall of a
+       * thin gap is.
+       */
       bool
       lies_along(const PlaneQuad &other) const
       {
@@ -129,7 +134,8 @@ namespace alveolus
                 pieces.emplace_back(o, part);
               sum += part;
             }
-        // Beyond the rim of the old surface: the nearest one that is close
+        // Beyond the rim of the old surface, but for the round-off of edges
+        // that touch: the nearest one that is close
         if (sum < 1e-6 * quad.area)
           {
             unsigned int nearest = numbers::invalid_unsigned_int;
@@ -152,6 +158,7 @@ namespace alveolus
               }
             pieces = {{nearest, 1.}};
             sum    = 1.;
+            ++report.n_beyond;
           }
 
         const auto largest = std::max_element(pieces.begin(),

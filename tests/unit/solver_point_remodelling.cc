@@ -89,7 +89,7 @@ protected:
     mesh.triangulation =
       std::make_unique<parallel::distributed::Triangulation<2>>(MPI_COMM_WORLD);
     GridGenerator::hyper_cube(*mesh.triangulation, 0., 1.);
-    mesh.triangulation->refine_global(5);
+    mesh.triangulation->refine_global(6);
     mesh.names.regions["bone"] = {0};
     state                      = std::make_unique<State<2>>(
       mesh,
@@ -173,8 +173,8 @@ TEST_P(SharedRemodelling, IsThatOfEachPointToTheLastBit)
 
   // The scene is what it was made for, and the work of one half is shared.
   n_moved = Utilities::MPI::sum(n_moved, MPI_COMM_WORLD);
-  EXPECT_GT(n_moved, 32u * 16u); // of 32 x 32 x 4
-  EXPECT_LT(n_moved, 32u * 32u * 2u + 1u);
+  EXPECT_GT(n_moved, 64u * 32u); // of 64 x 64 x 4
+  EXPECT_LT(n_moved, 64u * 64u * 2u + 1u);
   if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
     EXPECT_GT(summary.n_shared, 32u);
   else

@@ -347,6 +347,7 @@ TEST(SurfaceOverlap, PlaneSide)
   EXPECT_NEAR(report.length_before, 1., 1e-14);
   EXPECT_NEAR(report.length_after, 1., 1e-14);
   EXPECT_LT(report.largest_distance, 1e-15);
+  EXPECT_EQ(report.n_beyond, 0u);
   for (unsigned int c = 0; c < 3; ++c)
     EXPECT_NEAR(report.integral_after[c], report.integral_before[c], 1e-14);
   // y = 1/2 is in the middle of the fourth of seven cells, between its two
@@ -423,6 +424,26 @@ TEST(SurfaceOverlap, BallOnAnyNumberOfProcesses)
       }
   EXPECT_GT(errors[0] / errors[1], 1.8);
   EXPECT_LT(errors[1], 0.01);
+}
+
+
+
+// A row of new cells beyond the rim takes the last values and is counted.
+TEST(SurfaceOverlap, BeyondTheRim)
+{
+  Body a(1, cube(4)), b(1, cube(4));
+  a.for_all(a.configuration->positions(),
+            [](double *record, const Point<3> &p) { record[0] = p[1]; });
+  b.configuration->set_positions(
+    b.moved([](const Point<3> &) { return Point<3>(0., 0.125, 0.); }));
+  const FaceTransferReport report = FaceOverlap<3>(*a.configuration, *a.history)
+                                      .transfer(*b.configuration, *b.history);
+  // By one row of sub-quadrilaterals: the others fit
+  EXPECT_EQ(report.n_beyond, 8u);
+  b.for_all(b.configuration->positions(),
+            [](const double *record, const Point<3> &p) {
+              EXPECT_NEAR(record[0], std::min(p[1], 0.9375), 1e-14);
+            });
 }
 
 

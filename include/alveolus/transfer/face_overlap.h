@@ -48,8 +48,9 @@ namespace alveolus
      * Fill the old records of @p new_history (collective); trial records are
      * not touched.
      * @throws RunError if the new boundary is farther from the old ones than
-     * half an edge, changes from one to another, or folds back along it, or the
-     * histories have not the same components
+     * half an edge (in space: a sub-quadrilateral), changes from one curve to
+     * another, or folds back along it, or the histories have not the same
+     * components
      */
     FaceTransferReport
     transfer(const Configuration<dim> &new_configuration,

@@ -22,6 +22,9 @@ namespace alveolus
     /** Of new points from the old curve; of the motion of points normal to the
      * old surface [mm]. */
     double largest_distance = 0.;
+    /** New sub-quadrilaterals beyond the rim of the old surface, which took the
+     * nearest value (FaceOverlap in space). */
+    unsigned int n_beyond = 0;
     /** False: the boundary stayed, nothing was done. */
     bool moved = false;
   };
